@@ -1,0 +1,69 @@
+#pragma once
+
+#include "core/algebra/bivector.hpp"
+
+namespace tesserae {
+
+/// A rotation of 4D space as an element s + B + p xyzw of the even algebra: v goes to R v R~.
+/// Unit rotors (the group Spin(4)) obey two conditions, s^2 + |B|^2 + p^2 = 1 and 2 s p = B ^ B.
+/// A body's rotor takes body coordinates to world coordinates. R and -R are the same rotation.
+struct Rotor {
+    double s = 1;
+    Bivector b;
+    double p = 0;
+
+    friend bool operator==(const Rotor&, const Rotor&) = default;
+    friend Rotor operator-(const Rotor& r) { return {-r.s, -r.b, -r.p}; }
+};
+
+/// A component of a unit rotor below this is rounding, not a sign: it counts as zero where R and -R
+/// are told apart (in a few products of rotors 1e-15 gathers; 1e-12 rad is far below any picture).
+constexpr double kRotorNoise = 1e-12;
+
+/// Geometric product: the rotation b first, then a.
+Rotor operator*(const Rotor& a, const Rotor& b);
+
+/// R~, the inverse of a unit rotor.
+inline Rotor reverse(const Rotor& r) { return {r.s, -r.b, r.p}; }
+
+/// e^B. A rotation by angle t in the plane xy, turning x toward y, is exp(-t/2 xy): one whose world
+/// angular velocity is omega for a time h is exp(-h/2 omega).
+/// Every B has two invariant planes; the even algebra is a pair of quaternions whose angles are the
+/// sum and the difference of the planes' angles, so equal angles (isoclinic) are no special case.
+Rotor exp(const Bivector& b);
+
+/// The B with exp(B) = r for a unit rotor, of least norm among those whose two quaternion angles
+/// lie in [0, pi]. Where an angle is pi its direction is free: a fixed one is taken.
+Bivector log(const Rotor& r);
+
+/// The two commuting simple bivectors with first + second = b and |first| >= |second|. For an
+/// isoclinic b (|first| = |second|) any orthogonal pair would do; the one that holds the x axis is
+/// returned.
+struct InvariantPlanes {
+    Bivector first, second;
+};
+InvariantPlanes invariant_planes(const Bivector& b);
+
+/// The unit rotor nearest to a drifted one, on both conditions (rescaling alone mends only one).
+/// Needs a rotor that is not a null element: s, B, p with |s^2 + |B|^2 + p^2| > |2 s p - B ^ B|.
+Rotor projected_to_spin4(const Rotor& r);
+
+/// R v R~ for all four axes: the rotation as an orthogonal matrix of determinant +1.
+Mat4 to_matrix(const Rotor& r);
+
+/// The rotor, up to sign, of an orthogonal matrix of determinant +1. The sign makes the first of
+/// s, xy, ..., zw, p that is beyond kRotorNoise positive.
+Rotor to_rotor(const Mat4& rotation);
+
+/// R v R~.
+inline Vec4 rotate(const Rotor& r, const Vec4& v) { return to_matrix(r) * v; }
+
+/// R B R~: what the rotation does to planes.
+Bivector rotate(const Rotor& r, const Bivector& b);
+
+/// From r0 (t = 0) to r1 (t = 1) at constant angular velocity the shortest way. At half turns,
+/// where two ways are equally short, the one for which the first of s, xy, ..., zw, p of
+/// r1 reverse(r0) that is beyond kRotorNoise is positive.
+Rotor interpolate(const Rotor& r0, const Rotor& r1, double t);
+
+}  // namespace tesserae

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/contact/contact.hpp"
+#include "core/shape/hyperplane.hpp"
+#include "core/shape/hypersphere.hpp"
+
+namespace tesserae {
+
+/// At most one point, feature 0, reported when the separation is at most `margin` [m]. A centre
+/// behind the plane is pushed to the free side too, however deep.
+void contacts_between(const Hypersphere& sphere, const Pose& pose, const Hyperplane& plane,
+                      const Pose& plane_pose, double margin, PairContacts& out);
+
+}  // namespace tesserae

@@ -1,0 +1,54 @@
+#include "core/dynamics/pairs.hpp"
+
+#include <algorithm>
+
+#include "core/contact/find_contacts.hpp"
+
+namespace tesserae {
+namespace {
+
+bool overlap(const Bounds& a, const Bounds& b) {
+    return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+}
+
+/// Whether a bounded body can reach an unbounded one, by the distance of its centre.
+bool reaches(const Simulation& simulation, const StepData& step, BodyId bounded, BodyId unbounded) {
+    const Bounds& bounds = step.bounds[bounded];
+    const double reach = 0.5 * (bounds.upper[0] - bounds.lower[0]);
+    return std::visit(
+        [&](const auto& shape) { return signed_distance(shape, step.position[bounded]) <= reach; },
+        simulation.bodies.type_of(unbounded).shape);
+}
+
+}  // namespace
+
+bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
+    const TypeProperties& type_a = simulation.type_of(a);
+    const TypeProperties& type_b = simulation.type_of(b);
+    if (!type_a.movable && !type_b.movable) return false;
+    if (!type_a.bounded) return reaches(simulation, step, b, a);
+    if (!type_b.bounded) return reaches(simulation, step, a, b);
+    return overlap(step.bounds[a], step.bounds[b]);
+}
+
+void find_pairs(const Simulation& simulation, StepData& step) {
+    step.pairs.clear();
+    const auto count = static_cast<BodyId>(simulation.bodies.size());
+    for (BodyId a = 0; a < count; ++a)
+        for (BodyId b = a + 1; b < count; ++b)
+            if (is_pair(simulation, step, a, b)) step.pairs.push_back({a, b});
+}
+
+void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
+                   std::vector<Contact>& list) {
+    const Bodies& bodies = simulation.bodies;
+    for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
+        const auto [a, b] = step.pairs[i];
+        const double slop = std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
+        const double margin = slop + step.dt * (step.velocity[b] - step.velocity[a]).norm();
+        find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    }
+}
+
+}  // namespace tesserae

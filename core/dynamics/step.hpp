@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/dynamics/step_data.hpp"
+#include "core/error.hpp"
+
+namespace tesserae {
+
+/// A body's position, velocity or angular velocity has grown so large that its square overflows,
+/// or is no number. The lowest such body is named; the bodies are still as after the last step.
+struct LeftFiniteRange : RunError {
+    LeftFiniteRange(BodyId body, double time);
+    BodyId body;
+    double time;  ///< of the step's end [s]
+};
+
+/// Checks the bodies and works out what every step needs.
+/// @throws InputError   a pair of shapes that can meet has no contacts yet; arrays of different
+///                      lengths; 2^32 bodies or more
+Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings);
+
+/// Sizes the step's arrays of bodies.
+/// @throws InputError   dt is not finite or not > 0
+void begin_step(const Simulation& simulation, StepData& step, double dt);
+
+/// Sizes the step's arrays of contacts, once these are known.
+void begin_contacts(StepData& step);
+
+/// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
+void require_finite(const Simulation& simulation, const StepData& step);
+
+/// Makes the step's result the present state, and its impulses the memory.
+StepReport commit_step(Simulation& simulation, StepData& step);
+
+}  // namespace tesserae

@@ -1,0 +1,63 @@
+#include "core/dynamics/world.hpp"
+
+#include <utility>
+
+#include "core/dynamics/motion.hpp"
+#include "core/dynamics/pairs.hpp"
+#include "core/dynamics/solver.hpp"
+
+namespace tesserae {
+
+World::World(Bodies bodies, const PhysicsSettings& settings)
+    : simulation_(make_simulation(std::move(bodies), settings)) {}
+
+StepReport World::step(double dt) {
+    begin_step(simulation_, step_, dt);
+    advance_first_half();    // free motion to the step's middle, where contacts act
+    integrate_velocities();  // gravity
+    update_bounds();
+    find_pairs();     // here every pair; parallel/ sorts and sweeps
+    find_contacts();  // narrow phase, contacts keyed by feature id
+    build_islands();
+    solve_islands();        // sequential impulses, warm started
+    advance_second_half();  // rotor exponential, projected to unit rotors
+    return finish_step();
+}
+
+void World::advance_first_half() {
+    tesserae::advance_first_half(simulation_, step_, all_bodies());
+    require_finite(simulation_, step_);
+}
+
+void World::integrate_velocities() {
+    tesserae::integrate_velocities(simulation_, step_, all_bodies());
+}
+
+void World::update_bounds() { tesserae::update_bounds(simulation_, step_, all_bodies()); }
+
+void World::find_pairs() { tesserae::find_pairs(simulation_, step_); }
+
+void World::find_contacts() {
+    step_.contacts.clear();
+    tesserae::find_contacts(simulation_, step_, {0, step_.pairs.size()}, step_.contacts);
+    begin_contacts(step_);
+    recall_impulses(simulation_, step_, {0, step_.contacts.size()});
+}
+
+void World::build_islands() { island_builder_.build(simulation_, step_); }
+
+void World::solve_islands() {
+    for (std::size_t island = 0; island < step_.islands.size(); ++island)
+        solve_island(simulation_, step_, island);
+}
+
+void World::advance_second_half() {
+    tesserae::advance_second_half(simulation_, step_, all_bodies());
+}
+
+StepReport World::finish_step() {
+    require_finite(simulation_, step_);
+    return commit_step(simulation_, step_);
+}
+
+}  // namespace tesserae

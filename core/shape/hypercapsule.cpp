@@ -1,0 +1,96 @@
+#include "core/shape/hypercapsule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/shape/hypersphere.hpp"
+
+namespace tesserae {
+namespace {
+
+/// From the core's closest point to `point`.
+Vec4 offset_from_core(const Hypercapsule& shape, Vec4 point) {
+    const double half = 0.5 * shape.height;
+    point[1] -= std::clamp(point[1], -half, half);
+    return point;
+}
+
+/// v without its part along the axis.
+Vec4 across(Vec4 v) {
+    v[1] = 0;
+    return v;
+}
+
+}  // namespace
+
+/// A spherinder (ball of three dimensions times the core) and two half hyperspheres:
+/// (4/3) pi R^3 H + pi^2 R^4 / 2.
+double volume(const Hypercapsule& shape) {
+    // The height comes first: 0 times an overflown cube would be no number.
+    const double r = shape.radius;
+    return shape.height * (4.0 / 3.0 * M_PI) * r * r * r + volume(Hypersphere{r});
+}
+
+/// FORMULAS 2: the two parts' own moments, and the caps' shift along the axis. The centre of a half
+/// hypersphere lies 16 R / (15 pi) from its flat side.
+Vec4 second_moments(const Hypercapsule& shape, double mass) {
+    const double r = shape.radius, h = shape.height;
+    const double parts = 8 * h + 3 * M_PI * r;
+    const double spherinder = mass * (8 * h / parts);
+    const double caps = mass * (3 * M_PI * r / parts);
+    // Each product starts with a mass: a vanishing part times an overflown square stays a number.
+    const double across_axis = spherinder * r * r / 5 + caps * r * r / 6;
+    const double along_axis = spherinder * h * h / 12 + caps * r * r / 6 + caps * h * h / 4 +
+                              16 / (15 * M_PI) * caps * r * h;
+    return {across_axis, along_axis, across_axis, across_axis};
+}
+
+double bounding_radius(const Hypercapsule& shape) { return 0.5 * shape.height + shape.radius; }
+
+Vec4 half_extents(const Hypercapsule& shape, const Mat4& rotation) {
+    return (0.5 * shape.height * rotation.col(1).cwiseAbs()).array() + shape.radius;
+}
+
+double half_extent_along(const Hypercapsule& shape, const Vec4& direction) {
+    return 0.5 * shape.height * std::abs(direction[1]) + shape.radius * stable_norm(direction);
+}
+
+/// A direction across the axis, where a whole segment is farthest: its end towards +y.
+Vec4 support(const Hypercapsule& shape, const Vec4& direction) {
+    Vec4 point = support(Hypersphere{shape.radius}, direction);
+    point[1] += direction[1] < 0 ? -0.5 * shape.height : 0.5 * shape.height;
+    return point;
+}
+
+double signed_distance(const Hypercapsule& shape, const Vec4& point) {
+    return stable_norm(offset_from_core(shape, point)) - shape.radius;
+}
+
+/// On the core: +x, orthogonal to it; for height 0 the hypersphere's choice.
+Vec4 normal(const Hypercapsule& shape, const Vec4& point) {
+    const Vec4 offset = offset_from_core(shape, point);
+    if (offset.isZero(0) && shape.height > 0) return Vec4::UnitX();
+    return normal(Hypersphere{shape.radius}, offset);
+}
+
+double ray_hit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction) {
+    if (signed_distance(shape, origin) <= 0) return 0;
+    const Hypersphere ball{shape.radius};
+    const double half = 0.5 * shape.height;
+
+    // Seen along the axis the capsule is a ball: the ray enters the unending wall where its shadow
+    // enters that ball. If this is beside the core, nothing of the capsule comes earlier.
+    const double sine = stable_norm(across(direction));
+    if (sine > 0) {
+        const double shadow = ray_hit(ball, across(origin), across(direction) / sine);
+        if (shadow == kMiss) return kMiss;
+        const double wall = shadow / sine;
+        if (std::abs(origin[1] + wall * direction[1]) <= half) return wall;
+    }
+
+    // Else it can only enter through a cap.
+    const Vec4 end = half * Vec4::UnitY();
+    return std::min(ray_hit(ball, origin - end, direction), ray_hit(ball, origin + end, direction));
+}
+
+}  // namespace tesserae

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/shape/room.hpp"
+
+namespace tesserae {
+
+/// A half-space of the world: the side that the normal points to is free, the other solid. Its
+/// boundary is normal . p = offset.
+struct Hyperplane {
+    static constexpr const char* kName = "hyperplane";
+    static constexpr bool kBounded = false;
+
+    Vec4 normal = Vec4::UnitY();  ///< unit once completed; any nonzero direction before
+    double offset = 0;            ///< [m], along the unit normal
+
+    friend bool operator==(const Hyperplane&, const Hyperplane&) = default;
+    template <class Self, class Visit>
+    static void parameters(Self& self, Visit&& visit) {
+        visit("normal", self.normal, Rule::kNonZero);
+        visit("offset", self.offset, Rule::kFinite);
+    }
+};
+
+/// Makes the normal unit.
+void complete(Hyperplane&);
+double volume(const Hyperplane& shape);
+Vec4 second_moments(const Hyperplane& shape, double mass);
+double bounding_radius(const Hyperplane& shape);
+Vec4 half_extents(const Hyperplane& shape, const Mat4& rotation);
+double half_extent_along(const Hyperplane& shape, const Vec4& direction);
+Vec4 support(const Hyperplane& shape, const Vec4& direction);
+double signed_distance(const Hyperplane& shape, const Vec4& point);
+Vec4 normal(const Hyperplane& shape, const Vec4& point);
+double ray_hit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);
+
+}  // namespace tesserae

@@ -1,0 +1,60 @@
+#include "core/shape/hypersphere.hpp"
+
+#include <cmath>
+
+namespace tesserae {
+
+/// pi^2 R^4 / 2.
+double volume(const Hypersphere& shape) {
+    const double r = shape.radius;
+    return 0.5 * M_PI * M_PI * r * r * r * r;
+}
+
+/// M R^2 / 6 along every axis (so every plane's inertia is M R^2 / 3).
+Vec4 second_moments(const Hypersphere& shape, double mass) {
+    return Vec4::Constant(mass * shape.radius * shape.radius / 6);
+}
+
+double bounding_radius(const Hypersphere& shape) { return shape.radius; }
+
+Vec4 half_extents(const Hypersphere& shape, const Mat4&) { return Vec4::Constant(shape.radius); }
+
+double half_extent_along(const Hypersphere& shape, const Vec4& direction) {
+    return shape.radius * stable_norm(direction);
+}
+
+/// For a zero direction, where all points are equal: the one along +y.
+Vec4 support(const Hypersphere& shape, const Vec4& direction) {
+    return shape.radius * normal(shape, direction);
+}
+
+double signed_distance(const Hypersphere& shape, const Vec4& point) {
+    return stable_norm(point) - shape.radius;
+}
+
+/// At the centre: +y.
+Vec4 normal(const Hypersphere&, const Vec4& point) {
+    return point.isZero(0) ? Vec4(Vec4::UnitY()) : stable_normalized(point);
+}
+
+/// Source: the quadratic's roots by way of the point of the ray nearest to the centre, which loses
+/// nothing far away (Haines et al., Ray Tracing Gems, 2019, chapter 7); the nearer root as the
+/// quotient c / (b + h), which loses nothing close to the surface.
+double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction) {
+    const double r = shape.radius;
+    const double distance = stable_norm(origin);
+    if (distance <= r) return 0;
+
+    // Go to the nearest point of the ray's line. Comparisons are written to fail on a NaN, which
+    // only coordinates at the end of double's range can bring about.
+    const double nearest = -origin.dot(direction);
+    if (!(nearest > 0)) return kMiss;
+    const double sine = stable_norm(origin + nearest * direction) / r;
+    if (!(sine <= 1)) return kMiss;
+
+    // Come back by half the chord.
+    const double half_chord = r * std::sqrt((1 - sine) * (1 + sine));
+    return (distance - r) * ((distance + r) / (nearest + half_chord));
+}
+
+}  // namespace tesserae

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/shape/room.hpp"
+
+namespace tesserae {
+
+/// All points within `radius` of the centre.
+struct Hypersphere {
+    static constexpr const char* kName = "hypersphere";
+    static constexpr bool kBounded = true;
+
+    double radius = 1;  ///< [m], > 0
+
+    friend bool operator==(const Hypersphere&, const Hypersphere&) = default;
+    template <class Self, class Visit>
+    static void parameters(Self& self, Visit&& visit) {
+        visit("radius", self.radius, Rule::kPositive);
+    }
+};
+
+inline void complete(Hypersphere&) {}
+double volume(const Hypersphere& shape);
+Vec4 second_moments(const Hypersphere& shape, double mass);
+double bounding_radius(const Hypersphere& shape);
+Vec4 half_extents(const Hypersphere& shape, const Mat4& rotation);
+double half_extent_along(const Hypersphere& shape, const Vec4& direction);
+Vec4 support(const Hypersphere& shape, const Vec4& direction);
+double signed_distance(const Hypersphere& shape, const Vec4& point);
+Vec4 normal(const Hypersphere& shape, const Vec4& point);
+double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
+
+}  // namespace tesserae

@@ -1,0 +1,64 @@
+#include "parallel/island_graph.hpp"
+
+#include <tbb/flow_graph.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/dynamics/solver.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+/// Contacts that make a message: some 20 us of work at 10 iterations. Fewer, and the overhead of a
+/// task shows; many more, and the threads run out of messages.
+constexpr std::uint32_t kContactsOfMessage = 32;
+
+}  // namespace
+
+struct IslandGraph::Graph {
+    /// Places in `order`.
+    using Message = Range;
+
+    Graph()
+        : node(graph, tbb::flow::unlimited, [this](const Message& message) {
+              for (std::size_t i = message.begin; i < message.end; ++i)
+                  solve_island(*simulation, *step, order[i]);
+              return tbb::flow::continue_msg();
+          }) {}
+
+    const Simulation* simulation = nullptr;
+    StepData* step = nullptr;
+    std::vector<std::uint32_t> order;  ///< islands, by falling size, then number
+    tbb::flow::graph graph;
+    tbb::flow::function_node<Message> node;
+};
+
+IslandGraph::IslandGraph() : graph_(std::make_unique<Graph>()) {}
+IslandGraph::~IslandGraph() = default;
+
+void IslandGraph::solve(const Simulation& simulation, StepData& step) {
+    Graph& g = *graph_;
+    g.simulation = &simulation;
+    g.step = &step;
+    const std::vector<std::uint32_t>& first = step.islands.first;
+    const auto size = [&](std::uint32_t island) { return first[island + 1] - first[island]; };
+
+    g.order.resize(step.islands.size());
+    std::iota(g.order.begin(), g.order.end(), 0u);
+    std::sort(g.order.begin(), g.order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return size(i) != size(j) ? size(i) > size(j) : i < j;
+    });
+
+    for (std::size_t begin = 0; begin < g.order.size();) {
+        std::size_t end = begin;
+        for (std::uint32_t contacts = 0; end < g.order.size() && contacts < kContactsOfMessage;
+             ++end)
+            contacts += size(g.order[end]);
+        g.node.try_put({begin, end});
+        begin = end;
+    }
+    g.graph.wait_for_all();
+}
+
+}  // namespace tesserae::parallel

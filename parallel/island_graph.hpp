@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "core/dynamics/step_data.hpp"
+
+namespace tesserae::parallel {
+
+/// A flow graph with one node of unlimited concurrency, to which islands are sent as messages:
+/// the largest first, so that the last one to end is short, and small ones several to a message,
+/// so that a message is worth its cost. Islands share nothing that changes, so that any order of
+/// solving gives the same bits.
+class IslandGraph {
+  public:
+    /// Built in the arena of the calling thread, which its work then uses.
+    IslandGraph();
+    ~IslandGraph();
+    IslandGraph(const IslandGraph&) = delete;
+    IslandGraph& operator=(const IslandGraph&) = delete;
+
+    /// core's solve_island() for all islands of the step.
+    void solve(const Simulation& simulation, StepData& step);
+
+  private:
+    struct Graph;
+    std::unique_ptr<Graph> graph_;
+};
+
+}  // namespace tesserae::parallel

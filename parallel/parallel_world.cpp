@@ -1,0 +1,96 @@
+#include "parallel/parallel_world.hpp"
+
+#include <utility>
+
+#include "core/dynamics/islands.hpp"
+#include "core/dynamics/motion.hpp"
+#include "core/dynamics/pairs.hpp"
+#include "core/dynamics/solver.hpp"
+#include "parallel/chunks.hpp"
+#include "parallel/island_graph.hpp"
+#include "parallel/sort_and_sweep.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+/// Items of one task: some 10 to 50 us of work each.
+constexpr std::size_t kBodyGrain = 256;
+constexpr std::size_t kPairGrain = 512;
+constexpr std::size_t kContactGrain = 1024;
+
+}  // namespace
+
+struct ParallelWorld::Stages {
+    SortAndSweep sort_and_sweep;
+    ChunkedList<Contact> contacts;
+    IslandBuilder island_builder;
+    IslandGraph island_graph;
+};
+
+ParallelWorld::ParallelWorld(Bodies bodies, const PhysicsSettings& settings)
+    : simulation_(make_simulation(std::move(bodies), settings)) {}
+
+ParallelWorld::~ParallelWorld() = default;
+
+StepReport ParallelWorld::step(double dt) {
+    begin_step(simulation_, step_, dt);
+    // A graph works in the arena that it is built in, and the first step is the first to know it.
+    if (!stages_) stages_ = std::make_unique<Stages>();
+    advance_first_half();
+    integrate_velocities();
+    update_bounds();
+    find_pairs();
+    find_contacts();
+    build_islands();
+    solve_islands();
+    advance_second_half();
+    return finish_step();
+}
+
+void ParallelWorld::advance_first_half() {
+    for_each_range(simulation_.bodies.size(), kBodyGrain,
+                   [&](Range bodies) { tesserae::advance_first_half(simulation_, step_, bodies); });
+    require_finite(simulation_, step_);
+}
+
+void ParallelWorld::integrate_velocities() {
+    for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
+        tesserae::integrate_velocities(simulation_, step_, bodies);
+    });
+}
+
+void ParallelWorld::update_bounds() {
+    for_each_range(simulation_.bodies.size(), kBodyGrain,
+                   [&](Range bodies) { tesserae::update_bounds(simulation_, step_, bodies); });
+}
+
+void ParallelWorld::find_pairs() { stages_->sort_and_sweep.find_pairs(simulation_, step_); }
+
+void ParallelWorld::find_contacts() {
+    stages_->contacts.collect(
+        step_.pairs.size(), kPairGrain,
+        [&](Range pairs, std::vector<Contact>& list) {
+            tesserae::find_contacts(simulation_, step_, pairs, list);
+        },
+        step_.contacts);
+    begin_contacts(step_);
+    for_each_range(step_.contacts.size(), kContactGrain,
+                   [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
+}
+
+void ParallelWorld::build_islands() { stages_->island_builder.build(simulation_, step_); }
+
+void ParallelWorld::solve_islands() { stages_->island_graph.solve(simulation_, step_); }
+
+void ParallelWorld::advance_second_half() {
+    for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
+        tesserae::advance_second_half(simulation_, step_, bodies);
+    });
+}
+
+StepReport ParallelWorld::finish_step() {
+    require_finite(simulation_, step_);
+    return commit_step(simulation_, step_);
+}
+
+}  // namespace tesserae::parallel

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "core/dynamics/step.hpp"
+
+namespace tesserae::parallel {
+
+/// core's World on several threads: the same stages, the same functions of core, the same bits at
+/// any number of threads.
+class ParallelWorld {
+  public:
+    /// @throws InputError   as make_simulation()
+    ParallelWorld(Bodies bodies, const PhysicsSettings& settings);
+    ~ParallelWorld();
+
+    /// Advances by dt [s], on the threads of the arena in which the first call is made: every call
+    /// belongs inside run() of the same Threads.
+    /// @throws InputError        dt is not finite or not > 0
+    /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
+    StepReport step(double dt);
+
+    const Bodies& bodies() const { return simulation_.bodies; }
+    const StepMemory& memory() const { return simulation_.memory; }
+    StepMemory& memory() { return simulation_.memory; }
+
+  private:
+    struct Stages;
+
+    void advance_first_half();
+    void integrate_velocities();
+    void update_bounds();
+    void find_pairs();
+    void find_contacts();
+    void build_islands();
+    void solve_islands();
+    void advance_second_half();
+    StepReport finish_step();
+
+    Simulation simulation_;
+    StepData step_;
+    std::unique_ptr<Stages> stages_;  ///< from the first step on
+};
+
+}  // namespace tesserae::parallel

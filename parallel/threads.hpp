@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+namespace tesserae::parallel {
+
+/// Cores that this process may use: the least of its affinity mask and the cpu quotas of its
+/// control groups (versions 1 and 2), rounded up. At least 1.
+int granted_cores();
+
+/// A number of threads for parallel work, which may be more than the cores. Where several such
+/// objects live at once, the least count limits all.
+class Threads {
+  public:
+    /// @param count  >= 1, the calling thread included
+    explicit Threads(int count);
+    ~Threads();
+    Threads(const Threads&) = delete;
+    Threads& operator=(const Threads&) = delete;
+
+    int count() const { return count_; }
+
+    /// Calls work() in such a way that the parallel loops in it use these threads.
+    void run(const std::function<void()>& work);
+
+  private:
+    struct Arena;
+    int count_;
+    std::unique_ptr<Arena> arena_;
+};
+
+}  // namespace tesserae::parallel

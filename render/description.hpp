@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/algebra/vector.hpp"
+
+// What a scene says about its picture, checked, with the defaults of the scene format. A list of
+// plain structs: loaders fill them, the renderer reads them.
+namespace tesserae::render {
+
+/// Linear Rec. 709.
+using Color = Eigen::Array3d;
+
+enum class Pattern { kNone, kChecker, kStripes };
+
+struct Material {
+    std::string name;
+    Color albedo = Color::Constant(0.8);  ///< each 0 to 1
+    Pattern pattern = Pattern::kNone;
+    Color pattern_albedo = Color::Constant(0.2);
+    double pattern_size = 0.5;  ///< edge of a cell, width of a stripe [m]
+};
+
+/// How the bodies of a type look.
+struct Appearance {
+    std::uint32_t material = 0;  ///< index into the materials
+    bool visible = true;         ///< to the camera, and casting shadows
+
+    friend bool operator==(const Appearance&, const Appearance&) = default;
+};
+
+/// Directional light of irradiance color * strength on a facing surface; its disc is a 3-ball of
+/// half-angle `angle` around -direction.
+struct Sun {
+    Vec4 direction = -Vec4::UnitY();  ///< unit: the way that the light travels
+    Color irradiance = Color::Ones();
+    double angle = 1;  ///< half-angle [degrees], 0 to 30; 0 is a hard shadow
+};
+
+struct Lights {
+    std::vector<Sun> suns;
+    Color sky = Color::Zero();  ///< radiance from everywhere, the sum of all skies
+};
+
+/// Position and orientation as written; Camera makes the orthonormal frame.
+struct CameraDescription {
+    Vec4 position = {0, 2, -8, 0};
+    Vec4 look_at = Vec4::Zero();
+    Vec4 up = Vec4::UnitY();
+    Vec4 fourth = Vec4::UnitW();  ///< the axis that the camera does not see
+    double field_of_view = 50;    ///< vertical [degrees]
+};
+
+enum class Intersector { kTrace, kAnalytic };
+
+/// Half open, in pixels from the top left.
+struct Crop {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+struct Channels {
+    bool color = true, depth = true, normal = true, albedo = true, id = true, position = false;
+};
+
+struct Settings {
+    int width = 1280, height = 720;
+    double frames_per_second = 30;
+    int samples = 16;
+    Intersector intersector = Intersector::kTrace;
+    int max_steps = 200;
+    double max_distance = 200;  ///< along a view ray [m]
+    int tile = 32;
+    Channels channels;
+    double exposure = 0;  ///< previews only [stops]
+    std::optional<Crop> crop;
+};
+
+}  // namespace tesserae::render

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "render/camera.hpp"
+#include "render/frame.hpp"
+#include "render/tile_image.hpp"
+
+namespace tesserae::render {
+
+/// Writes a frame as a tiled, ZIP-compressed OpenEXR file, tiles in the order of the calls. Without
+/// finish() nothing is left.
+/// Header attributes beside the standard ones, all of them functions of the scene:
+///   tesserae/scene, tesserae/sceneHash, tesserae/version, tesserae/idNames (JSON)   string
+///   tesserae/frame, tesserae/samples                                                int
+///   tesserae/time [s], tesserae/fieldOfView [degrees]                               double
+///   tesserae/cameraOrigin, cameraRight, cameraUp, cameraForward, cameraFourth
+///                                                   string: four numbers that read back exactly
+///   framesPerSecond (rational), chromaticities (Rec. 709)
+class ExrWriter {
+  public:
+    /// @param window   data window, half open; the display window is the full frame
+    /// @throws InputError   no channel is asked for; RunError as FileWriter
+    ExrWriter(const std::filesystem::path& path, const Settings& settings, const Crop& window,
+              const FrameInfo& info, const CameraDescription& description, const Camera& camera);
+    ~ExrWriter();
+
+    void write(const TileImage& tile);
+    /// After the last tile: the file appears under its name.
+    void finish();
+
+  private:
+    struct File;
+    Channels channels_;
+    std::unique_ptr<File> file_;
+};
+
+}  // namespace tesserae::render

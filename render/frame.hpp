@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "core/dynamics/bodies.hpp"
+#include "render/description.hpp"
+
+namespace tesserae::render {
+
+/// Everything that decides a frame's pixels. Refers to its parts; they must outlive it.
+struct Picture {
+    const Bodies& bodies;                    ///< poses at the frame's time
+    std::span<const Appearance> appearance;  ///< by body type
+    std::span<const Material> materials;
+    const CameraDescription& camera;
+    const Lights& lights;
+    const Settings& settings;
+};
+
+/// What goes into the header beside the pixels.
+struct FrameInfo {
+    std::string scene_name, scene_hash, program_version;
+    int frame = 0;
+    double time = 0;       ///< [s]
+    std::string id_names;  ///< JSON: names of the object ids
+};
+
+struct FrameStats {
+    std::uint64_t view_rays = 0, shadow_rays = 0, distance_evaluations = 0;
+    /// Sphere traces that used up their steps; they count as hits, so that no ray leaks through.
+    std::uint64_t unresolved = 0;
+
+    FrameStats& operator+=(const FrameStats& o) {
+        view_rays += o.view_rays, shadow_rays += o.shadow_rays;
+        distance_evaluations += o.distance_evaluations, unresolved += o.unresolved;
+        return *this;
+    }
+};
+
+/// Renders one frame into the EXR file `exr` and, unless empty, the PNG file `preview`. Runs on the
+/// threads of the caller's task arena; the bytes do not depend on their number.
+/// @throws RunError   a file cannot be written; Stopped once `stop` is set (nothing is left under a
+///                    final name); InputError for a camera without an orthonormal frame
+FrameStats render_frame(const Picture& picture, const FrameInfo& info,
+                        const std::filesystem::path& exr, const std::filesystem::path& preview,
+                        const std::atomic<bool>& stop);
+
+}  // namespace tesserae::render

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tesserae::render {
+
+/// PATH.partial, open for reading and writing and locked (flock) against other processes until it
+/// gets its final name. A killed process leaves no lock, and its leftover content is still there
+/// when the file is opened again. Failures throw RunError with the path and the system's reason.
+class PartialFile {
+  public:
+    /// @throws RunError   cannot be created, or another process holds it
+    explicit PartialFile(std::filesystem::path path);
+    /// Leaves the file where it is.
+    ~PartialFile();
+    PartialFile(const PartialFile&) = delete;
+    PartialFile& operator=(const PartialFile&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    const std::filesystem::path& partial() const { return partial_; }
+    int descriptor() const { return descriptor_; }
+
+    /// Lets others lock it for reading, as HDF5's readers do; still keeps other writers out.
+    void admit_readers();
+    /// Syncs the content, renames it to PATH while still locked, syncs the folder, and closes.
+    void publish();
+    /// Takes the file away.
+    void remove() noexcept;
+
+    /// The message of a failure: path, what could not be done, the system's reason.
+    std::string message(const char* what, int error) const;
+
+  private:
+    bool open_and_lock();
+    [[noreturn]] void fail(const char* what, int error);
+
+    std::filesystem::path path_, partial_;
+    int descriptor_ = -1;
+};
+
+}  // namespace tesserae::render

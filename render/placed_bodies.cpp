@@ -1,0 +1,44 @@
+#include "render/placed_bodies.hpp"
+
+#include <limits>
+
+namespace tesserae::render {
+namespace {
+
+bool has_pattern(const Picture& picture, std::uint32_t type) {
+    return picture.materials[picture.appearance[type].material].pattern != Pattern::kNone;
+}
+
+double radius_of(const Shape& shape) {
+    return std::visit(
+        [](const auto& s) {
+            if constexpr (std::decay_t<decltype(s)>::kBounded)
+                return bounding_radius(s);
+            else
+                return std::numeric_limits<double>::infinity();
+        },
+        shape);
+}
+
+}  // namespace
+
+PlacedBodies place_bodies(const Picture& picture, const Vec4& camera_origin) {
+    const Bodies& bodies = picture.bodies;
+    PlacedBodies placed;
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        const std::uint32_t type = bodies.type[id];
+        if (!picture.appearance[type].visible) continue;
+        const Shape& shape = bodies.types[type].shape;
+        std::uint32_t turn = PlacedBody::kNotTurned;
+        const bool round = std::holds_alternative<Hypersphere>(shape);
+        if (is_bounded(shape) && (!round || has_pattern(picture, type))) {
+            turn = static_cast<std::uint32_t>(placed.turns.size());
+            placed.turns.push_back(to_matrix(bodies.rotor[id]).transpose());
+        }
+        placed.bodies.push_back(
+            {bodies.position[id] - camera_origin, radius_of(shape), &shape, id, turn});
+    }
+    return placed;
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "render/tile_image.hpp"
+
+namespace tesserae::render {
+
+/// A small sRGB picture of a frame's window, gathered tile by tile: every preview pixel is the mean
+/// of a square of k x k film pixels (fewer at the right and bottom border), k the least that makes
+/// it at most 1920 wide and 4096 high. Values are clamped to [0, 1] after exposure and summed as
+/// integers, so that neither the order nor the size of the tiles shows in the bytes.
+class Preview {
+  public:
+    /// @param exposure   [stops]
+    Preview(const Crop& window, double exposure);
+
+    void add(const TileImage& tile);
+    /// @throws RunError   the file cannot be written
+    void write(const std::filesystem::path& path) const;
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+  private:
+    std::vector<std::uint8_t> codes() const;  ///< sRGB, row by row
+
+    Crop window_;
+    double gain_;
+    int factor_, width_, height_;
+    std::vector<std::array<std::uint32_t, 3>> sums_;
+};
+
+}  // namespace tesserae::render

@@ -1,0 +1,64 @@
+#include "render/shading.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tesserae::render {
+namespace {
+
+/// Patterns are read this part of pattern_size below the surface. Without it a face that lies on a
+/// boundary of cells would take either cell's colour, as rounding has it.
+constexpr double kPatternDepth = 1e-4;
+
+bool is_odd(double cell) { return cell - 2 * std::floor(0.5 * cell) != 0; }
+
+/// Where patterns have their origin: the body's, or for an infinite plane its point nearest to the
+/// world's.
+Vec4 pattern_origin(const Shape& shape) {
+    if (const auto* plane = std::get_if<Hyperplane>(&shape)) return plane->offset * plane->normal;
+    return Vec4::Zero();
+}
+
+}  // namespace
+
+Color albedo_at(const Material& m, const Vec4& point) {
+    if (m.pattern == Pattern::kNone) return m.albedo;
+    const Vec4 cell = (point.array() / m.pattern_size + 0.5).floor().matrix();
+    const double sum = m.pattern == Pattern::kChecker ? cell.sum() : cell.x();
+    return is_odd(sum) ? m.pattern_albedo : m.albedo;
+}
+
+Shading::Shading(const Picture& picture, const PlacedBodies& placed)
+    : picture_(picture), placed_(placed) {
+    for (const Sun& sun : picture.lights.suns)
+        if ((sun.irradiance > 0).any()) suns_.push_back(sun_disc(sun));
+    if (!suns_.empty()) shadows_.emplace(placed);
+}
+
+Surface Shading::surface(const Hit& hit, const Vec4& direction) const {
+    const PlacedBody& body = placed_.bodies[hit.body];
+    const Vec4 point = hit.distance * direction;
+    const Vec4 local = placed_.point_to_body(body, point);
+    const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
+    const std::uint32_t type = picture_.bodies.type[body.id];
+    const Material& material = picture_.materials[picture_.appearance[type].material];
+    Surface s = {hit.distance, hit.body, point, placed_.direction_to_world(body, out), {}};
+    s.albedo = material.pattern == Pattern::kNone
+                   ? material.albedo
+                   : albedo_at(material, local - pattern_origin(*body.shape) -
+                                             kPatternDepth * material.pattern_size * out);
+    return s;
+}
+
+Color Shading::radiance(const Surface& s, FrameStats& stats) const {
+    Color light = sky();
+    for (const SunDisc& sun : suns_) {
+        const double cosine = s.normal.dot(sun.toward);
+        if (cosine <= 0) continue;
+        const double visible = shadows_->visibility(sun, s.point, s.body, stats);
+        light += (3 / (4 * std::numbers::pi)) * cosine * visible * sun.irradiance;
+    }
+    return s.albedo * light;
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,129 @@
+#include "render/tile_image.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.hpp"
+#include "render/sampler.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// What is averaged over a pixel.
+struct Filtered {
+    Color color = Color::Zero();
+    Color albedo = Color::Zero();
+    double alpha = 0;
+};
+
+/// The largest finite half.
+constexpr double kHalfMax = 65504;
+
+Imath::half to_half(double v) {
+    return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
+}
+
+/// The rays of one tile.
+class TileRays {
+  public:
+    TileRays(const FrameScene& scene, const Tile& tile)
+        : scene_(scene), candidates_(candidates_of(scene.slice, tile.candidates)) {}
+
+    Pixel pixel(int x, int y);
+    FrameStats stats;
+
+  private:
+    std::optional<Surface> first_surface(const Vec2& film);
+    void add(const std::optional<Surface>& surface, Filtered& sum);
+
+    const FrameScene& scene_;
+    std::vector<Candidate> candidates_;
+};
+
+std::optional<Surface> TileRays::first_surface(const Vec2& film) {
+    ++stats.view_rays;
+    const Vec3 view = scene_.camera.ray_direction(film);
+    const Vec4 world = scene_.camera.to_world({view.x(), view.y(), view.z(), 0});
+    const Hit hit =
+        nearest_hit(scene_.placed, candidates_, view, world, scene_.picture.settings, stats);
+    if (!hit) return std::nullopt;
+    return scene_.shading.surface(hit, world);
+}
+
+void TileRays::add(const std::optional<Surface>& surface, Filtered& sum) {
+    if (!surface) {
+        sum.color += scene_.shading.sky();
+        return;
+    }
+    sum.alpha += 1;
+    sum.albedo += surface->albedo;
+    if (scene_.wants_color) sum.color += scene_.shading.radiance(*surface, stats);
+}
+
+void store(const std::optional<Surface>& surface, const FrameScene& scene, Pixel& pixel) {
+    pixel.depth = std::numeric_limits<float>::infinity();
+    pixel.id = 0;
+    std::fill_n(pixel.normal, 4, 0.0f);
+    std::fill_n(pixel.position, 4, 0.0f);
+    if (!surface) return;
+    const Vec4 position = surface->point + scene.camera.origin();
+    for (int i = 0; i < 4; ++i) {
+        pixel.normal[i] = static_cast<float>(surface->normal[i]);
+        pixel.position[i] = static_cast<float>(position[i]);
+    }
+    pixel.depth = static_cast<float>(surface->distance);
+    pixel.id = scene.placed.bodies[surface->body].id + 1;
+}
+
+Pixel TileRays::pixel(int x, int y) {
+    const Settings& settings = scene_.picture.settings;
+    const Channels& c = settings.channels;
+    const bool filtered = scene_.wants_color || c.albedo;
+    Pixel pixel;
+    Filtered sum;
+    const bool one = settings.samples == 1;
+    if (one || c.depth || c.normal || c.position || c.id) {
+        const auto surface = first_surface({x + 0.5, y + 0.5});
+        store(surface, scene_, pixel);
+        if (one) add(surface, sum);
+    } else {
+        store(std::nullopt, scene_, pixel);
+    }
+    if (!one && filtered)
+        for (int i = 0; i < settings.samples; ++i)
+            add(first_surface(Vec2(x, y) + pixel_sample(x, y, static_cast<std::uint32_t>(i))), sum);
+
+    const double weight = 1.0 / settings.samples;
+    for (int i = 0; i < 3; ++i) {
+        pixel.color[i] = to_half(weight * sum.color[i]);
+        pixel.albedo[i] = to_half(weight * sum.albedo[i]);
+    }
+    pixel.alpha = to_half(weight * sum.alpha);
+    return pixel;
+}
+
+}  // namespace
+
+FrameScene::FrameScene(const Picture& p, bool color)
+    : picture(p),
+      camera(p.camera, p.settings.width, p.settings.height),
+      placed(place_bodies(p, camera.origin())),
+      slice(slice_bounds(placed, camera, p.settings.max_distance)),
+      shading(p, placed),
+      wants_color(color) {}
+
+TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
+    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};
+    image.pixels.reserve(static_cast<std::size_t>(image.width()) *
+                         static_cast<std::size_t>(tile.y1 - tile.y0));
+    TileRays rays(scene, tile);
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            if (stop.load(std::memory_order_relaxed)) throw Stopped();
+            image.pixels.push_back(rays.pixel(x, y));
+        }
+    image.stats = rays.stats;
+    return image;
+}
+
+}  // namespace tesserae::render

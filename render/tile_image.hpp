@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Imath/half.h>
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "render/shading.hpp"
+#include "render/tiles.hpp"
+
+namespace tesserae::render {
+
+/// A pixel in the types of the image file.
+struct Pixel {
+    Imath::half color[3];   ///< radiance: bodies' part premultiplied by coverage, plus the sky's
+    Imath::half alpha;      ///< coverage of bodies
+    Imath::half albedo[3];  ///< of bodies, premultiplied by coverage
+    float depth;            ///< along the ray [m]; infinite where no body is
+    float normal[4];        ///< world axes
+    float position[4];      ///< world [m]
+    std::uint32_t id;       ///< body number + 1, 0 where no body is
+};
+
+/// A finished tile: its pixels row by row.
+struct TileImage {
+    int column = 0, row = 0;
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    std::vector<Pixel> pixels;
+    FrameStats stats;
+
+    int width() const { return x1 - x0; }
+    const Pixel& at(int x, int y) const {
+        return pixels[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
+                      static_cast<std::size_t>(x - x0)];
+    }
+};
+
+/// What all tiles of a frame share.
+struct FrameScene {
+    const Picture& picture;
+    Camera camera;
+    PlacedBodies placed;
+    std::vector<SliceBounds> slice;
+    Shading shading;
+    bool wants_color;  ///< for the image or the preview
+
+    FrameScene(const Picture& picture, bool wants_color);
+    FrameScene(const FrameScene&) = delete;  // its parts refer to each other
+};
+
+/// Renders a tile's pixels. Depth, normal, position and id are those of the ray through the pixel's
+/// centre; colour, coverage and albedo are averages over the pixel's samples, or the centre ray's
+/// where there is one sample.
+/// @throws Stopped once `stop` is set
+TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop);
+
+}  // namespace tesserae::render

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tesserae::scenes {
+
+/// What the user typed, checked as far as it can be without the scene.
+struct CommandLine {
+    std::string command;  ///< "run", "simulate", ...; empty: only help or version was asked for
+    std::filesystem::path file;  ///< the scene, or info's file
+    std::filesystem::path output;
+    std::filesystem::path trajectory;
+    std::string frames;
+    std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
+    int threads = 0;
+    bool quiet = false, json = false, overwrite = false;
+    /// "key=value" entries for load_scene: --set in order, then the options that override a key.
+    std::vector<std::string> sets;
+};
+
+/// Parses and checks the command line; prints help and version itself.
+/// @throws InputError   with the reason and where to find help
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace tesserae::scenes

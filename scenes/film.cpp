@@ -1,0 +1,121 @@
+#include "scenes/film.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "render/file_writer.hpp"
+#include "render/image_info.hpp"
+#include "scenes/effective.hpp"
+#include "scenes/poses.hpp"
+#include "scenes/progress.hpp"
+#include "scenes/signals.hpp"
+#include "scenes/timeline.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+/// A whole frame of this scene is there already.
+bool is_done(const Scene& scene, const fs::path& exr, const fs::path& png, bool overwrite) {
+    if (!fs::exists(exr)) return false;
+    std::string hash;
+    try {
+        hash = render::read_image_info(exr).scene_hash;
+    } catch (const InputError&) {
+        if (!overwrite) throw;
+    }
+    if (hash != scene.hash && !overwrite)
+        throw InputError(
+            fmt::format("{}: is a frame of another scene (hash {}, here {}); choose "
+                        "another folder, or --overwrite",
+                        exr.string(), hash, scene.hash));
+    return hash == scene.hash && fs::exists(png);
+}
+
+/// The bodies' names by object id (body number + 1), as a JSON object: "first-last" for lattices.
+std::string id_names(const Scene& scene) {
+    // Enough for a person and for mattes; a header is read whole by every viewer.
+    constexpr std::size_t kMaxNames = 10'000;
+    nlohmann::ordered_json names;
+    for (std::size_t i = 0; i < std::min(scene.names.size(), kMaxNames); ++i) {
+        const NamedBodies& n = scene.names[i];
+        const std::string ids = n.count > 1 ? fmt::format("{}-{}", n.first + 1, n.first + n.count)
+                                            : fmt::format("{}", n.first + 1);
+        names[ids] = n.name;
+    }
+    return names.dump();
+}
+
+void create_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+}  // namespace
+
+void claim_folder(const Scene& scene, const fs::path& folder, bool overwrite) {
+    create_folder(folder);
+    const fs::path file = folder / "scene.toml";
+    if (fs::exists(file)) {
+        const std::string other = read_text(file);
+        if (other == scene.effective) return;
+        if (!overwrite)
+            throw InputError(fmt::format(
+                "{}: holds frames of another scene: {}; choose another folder, or --overwrite",
+                folder.string(), first_difference(other, scene.effective)));
+    }
+    render::write_file(file, scene.effective);
+}
+
+FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
+                const fs::path& folder, bool overwrite, bool quiet) {
+    const auto begin = std::chrono::steady_clock::now();
+    Poses poses(scene, frames, trajectory);
+
+    FilmReport report;
+    report.frames = folder / "frames";
+    create_folder(report.frames);
+    create_folder(folder / "preview");
+
+    render::FrameInfo info;
+    info.scene_name = scene.name;
+    info.scene_hash = scene.hash;
+    info.program_version = TESSERAE_VERSION;
+    info.id_names = id_names(scene);
+
+    Progress progress("rendering", "frames", frames.size(), quiet);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        info.frame = frames[i];
+        info.time = frame_instant(scene, frames[i]).time;
+        const std::string stem = fmt::format("{}.{:04}", scene.name, info.frame);
+        const fs::path exr = report.frames / (stem + ".exr");
+        report.preview = folder / "preview" / (stem + ".png");
+        if (is_done(scene, exr, report.preview, overwrite)) {
+            progress.start_at(++report.kept);
+            continue;
+        }
+        const render::Picture picture = {poses.at(info.frame), scene.appearance, scene.materials,
+                                         scene.camera,         scene.lights,     scene.render};
+        report.stats += render::render_frame(picture, info, exr, report.preview, stop_requested());
+        ++report.rendered;
+        progress.update(i + 1);
+    }
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return report;
+}
+
+}  // namespace tesserae::scenes

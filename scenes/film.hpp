@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "render/frame.hpp"
+#include "scenes/scene.hpp"
+
+namespace tesserae::scenes {
+
+/// What filming did.
+struct FilmReport {
+    int rendered = 0, kept = 0;
+    render::FrameStats stats;
+    double seconds = 0;
+    std::filesystem::path frames, preview;  ///< folder of the frames; the last frame's preview
+};
+
+/// Makes `folder` this scene's: its scene.toml holds the effective scene that all its frames show.
+/// @throws InputError   it holds another scene's, and not `overwrite`; names the first difference
+void claim_folder(const Scene& scene, const std::filesystem::path& folder, bool overwrite);
+
+/// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
+/// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
+/// the caller's parallel::Threads.
+/// @throws InputError   the folder holds another scene's frames and not `overwrite`; the trajectory
+/// is
+///                      of another motion or lacks steps that the frames need
+/// @throws RunError     a file cannot be written
+/// @throws Stopped      after a signal; finished frames are kept
+FilmReport film(const Scene& scene, const std::vector<int>& frames,
+                const std::filesystem::path& trajectory, const std::filesystem::path& folder,
+                bool overwrite, bool quiet);
+
+}  // namespace tesserae::scenes

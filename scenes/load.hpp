@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "scenes/scene.hpp"
+
+namespace tesserae::scenes {
+
+/// Reads, overrides, checks and expands a scene file.
+/// @param sets   "KEY=VALUE" in order, as for --set; see Overrides. `render.crop=[x0, y0, x1, y1]`
+/// is
+///               known here only, not in files.
+/// @throws InputError   the file cannot be read, or anything in it is wrong:
+///                      `file:line:column: body 3 "crate": radius = -1: expected ...`
+///
+/// Limits beyond the format's: no real is larger than kLargest, no positive one smaller than
+/// kSmallest, masses are 1e-60 to 1e60 kg. Default names are body-N, N counting the [[body]] tables
+/// from 0 and then the [[lattice]] tables. Bodies of equal shape, mass, surface and looks share a
+/// BodyType; types are numbered as they are first met.
+Scene load_scene(const std::filesystem::path& file, std::span<const std::string> sets);
+
+}  // namespace tesserae::scenes

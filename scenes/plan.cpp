@@ -1,0 +1,131 @@
+#include "scenes/plan.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "render/frame.hpp"
+#include "scenes/memory.hpp"
+#include "scenes/timeline.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// Bytes of one body's position, rotor, velocity, angular velocity in memory and in a stored step.
+constexpr std::uint64_t kStateBytes = (4 + 8 + 4 + 6) * sizeof(double);
+/// States alive at once: the scene's, the world's before and after a step, two stored steps between
+/// which a frame lies, and the frame's.
+constexpr std::uint64_t kStates = 6;
+/// Contacts, bounds, pairs and islands: about eight contacts a body of a dense pile.
+constexpr std::uint64_t kStepBytes = 8 * 200;
+/// A body's bounds in the picture's hierarchy and lists.
+constexpr std::uint64_t kPictureBytes = 300;
+/// The program, its libraries and their buffers.
+constexpr std::uint64_t kProgramBytes = 100'000'000;
+/// A pixel of a tile in flight, all channels, before and after compression.
+constexpr std::uint64_t kPixelBytes = 200;
+
+bool any_motion(const Scene& scene) {
+    if (!scene.physics || scene.physics->duration == 0) return false;
+    const Bodies& bodies = scene.bodies;
+    const bool falls = !scene.physics->gravity.isZero(0);
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        const BodyType& type = bodies.type_of(id);
+        if (!is_bounded(type.shape)) continue;
+        if ((falls && !type.fixed_position) || !bodies.velocity[id].isZero(0) ||
+            !(bodies.angular_velocity[id] == Bivector{}))
+            return true;
+        // Overlapping bodies push each other apart even without gravity.
+        if (bodies.is_movable(id) && bodies.size() > 1) return true;
+    }
+    return false;
+}
+
+std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
+    return std::count_if(bodies.type.begin(), bodies.type.end(),
+                         [&](std::uint32_t type) { return predicate(type); });
+}
+
+void decide_physics(const Scene& scene, Plan& plan) {
+    if (!scene.physics)
+        plan.decisions.push_back({"physics", false, "the scene has no [physics] table: a still"});
+    else if (!plan.moves)
+        plan.decisions.push_back({"physics", false, "nothing can move: every frame shows time 0"});
+    else
+        plan.decisions.push_back({"physics", true,
+                                  fmt::format("{} of {} bodies can be moved by contacts",
+                                              plan.movable_bodies, plan.bodies)});
+    const bool any_turning_inertia =
+        std::any_of(scene.bodies.types.begin(), scene.bodies.types.end(), [](const BodyType& t) {
+            return is_bounded(t.shape) && !std::holds_alternative<Hypersphere>(t.shape);
+        });
+    if (plan.moves)
+        plan.decisions.push_back({"gyroscopic term", any_turning_inertia,
+                                  any_turning_inertia
+                                      ? "there are bodies whose inertia depends on the direction"
+                                      : "spheres only: inertia is the same in every plane"});
+}
+
+void decide_picture(const Scene& scene, Plan& plan) {
+    const Bodies& bodies = scene.bodies;
+    const auto visible = count_if_type(bodies, [&](auto t) { return scene.appearance[t].visible; });
+    if (visible < plan.bodies)
+        plan.decisions.push_back(
+            {"invisible bodies in the picture", false,
+             fmt::format("{} bodies have visible = false", plan.bodies - visible)});
+    const bool suns = !scene.lights.suns.empty();
+    plan.decisions.push_back(
+        {"shadow rays", suns && visible > 1,
+         !suns ? "no sun: the sky is taken unoccluded"
+               : (visible > 1 ? fmt::format("{} sun(s)", scene.lights.suns.size())
+                              : "nothing is there to cast a shadow on another body")});
+    const render::Channels& c = scene.render.channels;
+    const auto channel = [&](bool wanted, const char* name) {
+        if (!wanted)
+            plan.decisions.push_back({fmt::format("channel {}", name), false, "not in channels"});
+    };
+    channel(c.color, "color"), channel(c.depth, "depth"), channel(c.normal, "normal");
+    channel(c.albedo, "albedo"), channel(c.id, "id"), channel(c.position, "position");
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, int threads) {
+    Plan plan;
+    plan.bodies = scene.bodies.size();
+    plan.movable_bodies = count_if_type(scene.bodies, [&](std::uint32_t type) {
+        const BodyType& t = scene.bodies.types[type];
+        return is_bounded(t.shape) && !(t.fixed_position && t.fixed_rotation);
+    });
+    plan.moves = any_motion(scene);
+    plan.steps = step_count(scene);
+    plan.frames = frame_count(scene);
+
+    const render::Settings& r = scene.render;
+    const render::Crop crop = r.crop.value_or(render::Crop{0, 0, r.width, r.height});
+    const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
+    // With several samples a pixel's centre has a ray of its own, for depth, normal and id.
+    const std::uint64_t rays = r.samples == 1 ? 1 : r.samples + 1;
+    plan.view_rays = pixels * rays * plan.frames;
+    const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;
+    plan.memory_bytes = kProgramBytes + scene.source.size() + scene.effective.size() +
+                        plan.bodies * (kStates * kStateBytes + kPictureBytes) +
+                        plan.movable_bodies * kStepBytes + 4 * threads * tile * kPixelBytes;
+    if (plan.moves) plan.trajectory_bytes = 2 * plan.frames * plan.bodies * kStateBytes;
+
+    decide_physics(scene, plan);
+    decide_picture(scene, plan);
+    return plan;
+}
+
+void require_memory(const Plan& plan, const Scene& scene) {
+    const std::uint64_t available = available_memory();
+    if (plan.memory_bytes > available)
+        throw InputError(
+            fmt::format("{}: needs about {:.1f} GB of memory for {} bodies, {:.1f} GB are free: "
+                        "use fewer bodies "
+                        "or a larger machine",
+                        scene.file.string(), 1e-9 * static_cast<double>(plan.memory_bytes),
+                        plan.bodies, 1e-9 * static_cast<double>(available)));
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,64 @@
+#include "scenes/poses.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "scenes/effective.hpp"
+#include "scenes/timeline.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// Moves `bodies` the given fraction of the way to `after`.
+void interpolate_towards(Bodies& bodies, const Bodies& after, double fraction) {
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        bodies.position[id] += fraction * (after.position[id] - bodies.position[id]);
+        if (!(bodies.rotor[id] == after.rotor[id]))
+            bodies.rotor[id] = interpolate(bodies.rotor[id], after.rotor[id], fraction);
+    }
+}
+
+}  // namespace
+
+Poses::Poses(const Scene& scene, const std::vector<int>& frames,
+             const std::filesystem::path& trajectory)
+    : scene_(scene), before_(scene.bodies) {
+    if (trajectory.empty()) return;
+    trajectory_ = std::make_unique<TrajectoryReader>(trajectory);
+    const TrajectoryHeader& header = trajectory_->header();
+    if (header.motion_hash != scene.motion_hash)
+        throw InputError(
+            fmt::format("{}: is a trajectory of another motion: {}; simulate this scene, or render "
+                        "the one that "
+                        "the trajectory was made from",
+                        trajectory.string(), first_difference(header.effective, scene.effective)));
+    if (header.bodies != scene.bodies.size())
+        throw InputError(fmt::format("{}: holds {} bodies, the scene has {}", trajectory.string(),
+                                     header.bodies, scene.bodies.size()));
+    for (std::uint64_t step : steps_for_frames(scene, frames))
+        if (row_of(step) == trajectory_->rows())
+            throw InputError(fmt::format(
+                "{}: step {} is not stored, but the frames asked for need it; simulate without "
+                "--store-every, or to the end",
+                trajectory.string(), step));
+    after_ = scene.bodies;
+}
+
+std::uint64_t Poses::row_of(std::uint64_t step) const {
+    const auto& steps = trajectory_->steps();
+    const auto at = std::lower_bound(steps.begin(), steps.end(), step);
+    return at != steps.end() && *at == step ? at - steps.begin() : trajectory_->rows();
+}
+
+const Bodies& Poses::at(int frame) {
+    if (!trajectory_) return before_;
+    const FrameInstant instant = frame_instant(scene_, frame);
+    trajectory_->read_row(row_of(instant.step), before_);
+    if (instant.fraction > 0) {
+        trajectory_->read_row(row_of(instant.step + 1), after_);
+        interpolate_towards(before_, after_, instant.fraction);
+    }
+    return before_;
+}
+
+}  // namespace tesserae::scenes

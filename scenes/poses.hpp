@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "scenes/scene.hpp"
+#include "scenes/trajectory.hpp"
+
+namespace tesserae::scenes {
+
+/// The bodies' poses at frames' instants: those of the scene (a still), or interpolated between a
+/// trajectory's stored steps, positions linearly and rotors along the shortest way.
+class Poses {
+  public:
+    /// @param frames       that will be asked for
+    /// @param trajectory   empty: every frame shows the scene's own poses
+    /// @throws InputError   the trajectory is of another motion or lacks a step that a frame needs
+    Poses(const Scene& scene, const std::vector<int>& frames,
+          const std::filesystem::path& trajectory);
+
+    /// Valid until the next call.
+    const Bodies& at(int frame);
+
+  private:
+    std::uint64_t row_of(std::uint64_t step) const;
+
+    const Scene& scene_;
+    std::unique_ptr<TrajectoryReader> trajectory_;
+    Bodies before_, after_;
+};
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/settings.hpp"
+#include "render/description.hpp"
+
+namespace tesserae::scenes {
+
+/// A run of consecutive bodies under one name: a [[body]] or a [[lattice]].
+struct NamedBodies {
+    std::string name;
+    BodyId first = 0;
+    std::uint32_t count = 1;
+};
+
+/// A scene file, checked, overridden and expanded: all that simulating and rendering need.
+struct Scene {
+    std::filesystem::path file;
+    std::string name;                            ///< stem of the frames' file names
+    std::optional<PhysicsSettings> physics;      ///< none: a still
+    Bodies bodies;                               ///< at time 0
+    std::vector<render::Appearance> appearance;  ///< by body type
+    std::vector<NamedBodies> names;              ///< ascending, covering all bodies
+    std::vector<render::Material> materials;
+    render::CameraDescription camera;
+    render::Lights lights;
+    render::Settings render;
+
+    std::string source;     ///< the file's text as read
+    std::string effective;  ///< canonical TOML after overrides: the same scene gives the same text
+    std::string hash;       ///< 32 hex digits of `effective`
+    std::string motion_hash;  ///< 32 hex digits of its part that moves bodies
+};
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,129 @@
+#include "scenes/simulate.hpp"
+
+#include <chrono>
+
+#include "core/dynamics/energy.hpp"
+#include "core/error.hpp"
+#include "parallel/parallel_world.hpp"
+#include "scenes/effective.hpp"
+#include "scenes/progress.hpp"
+#include "scenes/signals.hpp"
+#include "scenes/timeline.hpp"
+#include "scenes/trajectory.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every) {
+    TrajectoryHeader header;
+    header.scene_name = scene.name;
+    header.source = scene.source;
+    header.effective = scene.effective;
+    header.hash = scene.hash;
+    header.motion_hash = scene.motion_hash;
+    header.program_version = TESSERAE_VERSION;
+    header.bodies = scene.bodies.size();
+    header.steps_per_second = scene.physics ? scene.physics->steps_per_second : 1;
+    header.store_every = store_every;
+    return header;
+}
+
+/// `file` is there, whole, and holds just these steps of this motion.
+bool is_complete(const Scene& scene, const fs::path& file, const std::vector<std::uint64_t>& steps,
+                 bool overwrite) {
+    if (overwrite || !fs::exists(file)) return false;
+    const TrajectoryReader there(file);
+    if (there.header().motion_hash != scene.motion_hash)
+        throw InputError(fmt::format(
+            "{}: holds another motion: {}; choose another file, or --overwrite", file.string(),
+            first_difference(there.header().effective, scene.effective)));
+    if (there.steps() != steps)
+        throw InputError(
+            fmt::format("{}: stores other steps of this motion ({} rows, {} wanted); "
+                        "choose another file, or --overwrite",
+                        file.string(), there.rows(), steps.size()));
+    return true;
+}
+
+StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& found,
+                   const Bodies& bodies) {
+    StepFacts facts;
+    facts.step = step;
+    facts.report = found;
+    facts.kinetic_energy = kinetic_energy(bodies);
+    if (scene.physics) {
+        facts.time = static_cast<double>(step) / scene.physics->steps_per_second;
+        facts.potential_energy = potential_energy(bodies, scene.physics->gravity);
+    }
+    return facts;
+}
+
+/// Stores the rows that are missing. Every row holds a state and what the step that led to it
+/// found; the first, before any step, found nothing.
+void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
+                const std::vector<std::uint64_t>& steps, SimulateReport& report, bool quiet) {
+    Bodies start = scene.bodies;
+    std::uint64_t step = 0;
+    StepMemory memory;
+    if (auto resume = writer.resume(start)) {
+        step = resume->step;
+        memory = std::move(resume->memory);
+    }
+    report.first_step = step;
+    // Where nothing moves every row is the first.
+    std::optional<parallel::ParallelWorld> world;
+    if (plan.moves) {
+        world.emplace(std::move(start), *scene.physics);
+        world->memory() = std::move(memory);
+    }
+    const Bodies& bodies = world ? world->bodies() : start;
+
+    Progress progress("simulating", "steps", steps.back(), quiet);
+    progress.start_at(step);
+    StepReport found;
+    for (std::uint64_t row = writer.rows(); row < steps.size(); ++row) {
+        for (; step < steps[row]; ++step) {
+            if (stop_requested()) throw Stopped();
+            if (world) found = world->step(1.0 / scene.physics->steps_per_second);
+            progress.update(step + 1);
+        }
+        writer.append(facts_of(scene, step, found, bodies), bodies,
+                      world ? world->memory() : memory);
+    }
+    report.last_step = step;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_every) {
+    if (store_every == 0) return steps_for_frames(scene, parse_frames("", frame_count(scene)));
+    std::vector<std::uint64_t> steps;
+    const std::uint64_t last = step_count(scene);
+    for (std::uint64_t step = 0; step <= last; step += store_every) {
+        steps.push_back(step);
+        if (last - step < store_every) break;
+    }
+    return steps;
+}
+
+SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
+                        std::uint64_t store_every, bool overwrite, bool quiet) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
+    SimulateReport report;
+    report.rows = steps.size();
+    report.first_step = report.last_step = steps.back();
+    if (!is_complete(scene, file, steps, overwrite)) {
+        TrajectoryWriter writer(file, header_of(scene, store_every), steps, overwrite);
+        if (!writer.note().empty()) fmt::print(stderr, "tesserae: {}\n", writer.note());
+        store_rows(scene, plan, writer, steps, report, quiet);
+        writer.finish();
+    }
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return report;
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "scenes/plan.hpp"
+#include "scenes/scene.hpp"
+
+namespace tesserae::scenes {
+
+/// What simulating did.
+struct SimulateReport {
+    std::uint64_t first_step = 0;  ///< where this run began: 0, or what an earlier one had kept
+    std::uint64_t last_step = 0;
+    std::uint64_t rows = 0;  ///< stored steps in the file
+    double seconds = 0;
+};
+
+/// The steps that a trajectory stores: every K-th from 0 on, or those that all frames need (K = 0).
+std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_every);
+
+/// Moves the scene's bodies and stores their states in `file`. A whole file of the same motion and
+/// steps is left as it is, an unfinished one is continued: the bytes are those of one straight run.
+/// Runs on the threads of the caller's parallel::Threads.
+/// @throws InputError   `file` is of another motion or stores other steps, and not `overwrite`
+/// @throws RunError     a body left the finite range, or the file cannot be written
+/// @throws Stopped      after a signal; what is stored is kept
+SimulateReport simulate(const Scene& scene, const Plan& plan, const std::filesystem::path& file,
+                        std::uint64_t store_every, bool overwrite, bool quiet);
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,113 @@
+#include "scenes/timeline.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+constexpr double kMaxSteps = 9007199254740992.0;  // 2^53: a step's number is exact as a double
+constexpr int kMaxFrames = 10'000'000;
+
+/// A frame whose instant is this close to a step (in steps, relative) is at that step: what
+/// k * steps_per_second / frames_per_second loses to rounding, with room to spare.
+constexpr double kSameStep = 1e-12;
+
+[[noreturn]] void bad_frames(const std::string& text, const std::string& why) {
+    throw InputError(fmt::format(
+        "--frames {}: {}; expected ranges such as 0-239x2,300 (first-last, xstep)", text, why));
+}
+
+int parse_number(const std::string& text, const char*& at, const char* end) {
+    int value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || *at == '-')
+        bad_frames(text, fmt::format("no frame number at \"{}\"", std::string(at, end)));
+    at = next;
+    return value;
+}
+
+}  // namespace
+
+std::uint64_t step_count(const Scene& scene) {
+    if (!scene.physics) return 0;
+    const double steps = std::round(scene.physics->duration * scene.physics->steps_per_second);
+    if (!(steps < kMaxSteps))
+        throw InputError(
+            fmt::format("{}: [physics]: duration x steps_per_second is {}: expected "
+                        "fewer than 2^53 steps",
+                        scene.file.string(), steps));
+    return static_cast<std::uint64_t>(steps);
+}
+
+int frame_count(const Scene& scene) {
+    if (!scene.physics) return 1;
+    const double duration = scene.physics->duration, rate = scene.render.frames_per_second;
+    if (!(duration * rate < kMaxFrames))
+        throw InputError(
+            fmt::format("{}: duration x frames_per_second is {} frames: expected fewer "
+                        "than {}",
+                        scene.file.string(), duration * rate, kMaxFrames));
+    // The product rounds; the rule is k / rate < duration, so step to the count that obeys it.
+    int count = static_cast<int>(duration * rate);
+    while (count > 0 && !((count - 1) / rate < duration)) --count;
+    while (count / rate < duration) ++count;
+    return std::max(count, 1);
+}
+
+FrameInstant frame_instant(const Scene& scene, int frame) {
+    const double time = frame / scene.render.frames_per_second;
+    if (!scene.physics) return {time, 0, 0};
+    const double steps = frame * scene.physics->steps_per_second / scene.render.frames_per_second;
+    const double nearest = std::round(steps);
+    const double last = static_cast<double>(step_count(scene));
+    if (std::abs(steps - nearest) <= kSameStep * std::max(1.0, steps) || steps >= last)
+        return {time, static_cast<std::uint64_t>(std::min(nearest, last)), 0};
+    const double before = std::floor(steps);
+    return {time, static_cast<std::uint64_t>(before), steps - before};
+}
+
+std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames) {
+    std::vector<std::uint64_t> steps;
+    for (int frame : frames) {
+        const FrameInstant at = frame_instant(scene, frame);
+        steps.push_back(at.step);
+        if (at.fraction > 0) steps.push_back(at.step + 1);
+    }
+    std::sort(steps.begin(), steps.end());
+    steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+    return steps;
+}
+
+std::vector<int> parse_frames(const std::string& text, int count) {
+    std::vector<int> frames;
+    if (text.empty()) {
+        for (int k = 0; k < count; ++k) frames.push_back(k);
+        return frames;
+    }
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (true) {
+        const int first = parse_number(text, at, end);
+        int last = first, step = 1;
+        if (at != end && *at == '-') last = parse_number(text, ++at, end);
+        if (at != end && *at == 'x') step = parse_number(text, ++at, end);
+        if (last < first) bad_frames(text, fmt::format("{} is after {}", first, last));
+        if (step < 1) bad_frames(text, "a step of 0");
+        if (last >= count)
+            bad_frames(text, fmt::format("the scene has no frame {}: its frames are 0 to {}", last,
+                                         count - 1));
+        for (int k = first; k <= last; k += std::min(step, count)) frames.push_back(k);
+        if (at == end) break;
+        if (*at != ',') bad_frames(text, fmt::format("unexpected \"{}\"", std::string(at, end)));
+        ++at;
+    }
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+}
+
+}  // namespace tesserae::scenes

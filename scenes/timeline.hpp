@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.hpp"
+
+namespace tesserae::scenes {
+
+/// Number of time steps: round(duration x steps_per_second); 0 for a still.
+/// @throws InputError   more steps than a 53-bit count
+std::uint64_t step_count(const Scene& scene);
+
+/// Number of frames: those k with k / frames_per_second < duration, at least frame 0.
+/// @throws InputError   more than 10^7
+int frame_count(const Scene& scene);
+
+/// Where a frame's instant lies between time steps.
+struct FrameInstant {
+    double time = 0;         ///< [s]
+    std::uint64_t step = 0;  ///< the last step at or before it
+    double fraction = 0;     ///< of the way to the next step, in [0, 1); 0: exactly at `step`
+};
+FrameInstant frame_instant(const Scene& scene, int frame);
+
+/// Steps that the given frames need, ascending, without repeats.
+std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames);
+
+/// Ranges "a-b", "a-bxs" and single numbers, separated by commas, in ascending order without
+/// repeats; empty means all frames.
+/// @throws InputError   bad syntax, or a frame that the scene does not have
+std::vector<int> parse_frames(const std::string& text, int count);
+
+}  // namespace tesserae::scenes

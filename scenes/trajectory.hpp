@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/memory.hpp"
+
+// Trajectories as HDF5 files after H5MD 1.1 (h5md.nongnu.org), in the default file format. HDF5
+// here is built without locks of its own: use all of this from one thread at a time.
+namespace tesserae::scenes {
+
+/// What a trajectory says of itself. Only `motion_hash`, `bodies`, `steps_per_second` and
+/// `store_every` decide whether an unfinished file can be continued.
+struct TrajectoryHeader {
+    std::string scene_name, source, effective, hash, motion_hash;
+    std::string program_version;
+    std::uint64_t bodies = 0;
+    double steps_per_second = 0;
+    std::uint64_t store_every = 0;  ///< 0: the steps that frames need
+};
+
+/// What a stored step is besides the bodies' states.
+struct StepFacts {
+    std::uint64_t step = 0;
+    double time = 0;  ///< [s]
+    StepReport report;
+    double kinetic_energy = 0, potential_energy = 0;  ///< [J]
+};
+
+/// Writes FILE.h5.partial row by row, FILE.h5 once finish()ed. The bytes of every dataset are a
+/// pure function of what is appended, whether or not the run was interrupted in between.
+///
+/// At least every two seconds of wall time during append(), and after the first row, everything
+/// goes to the system (H5Fflush), so that a process killed at any moment leaves a file that can be
+/// read and continued. It is not synced to the disk before finish(): that is needed against power
+/// cuts only, and would stall the run. Another process may read the growing file, not write it.
+/// Every failure (disk full, folder missing) throws RunError with the path and the reason; what was
+/// flushed before is kept under the unfinished name.
+class TrajectoryWriter {
+  public:
+    /// Continues an unfinished file of the same motion, else starts one.
+    /// @param steps       all steps that will be stored, ascending
+    /// @param overwrite   an unfinished file of another motion is replaced
+    /// @throws InputError   such a file is there, and not `overwrite`
+    TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
+                     std::vector<std::uint64_t> steps, bool overwrite);
+    /// Without finish(): flushes, and leaves the unfinished file to be continued.
+    ~TrajectoryWriter();
+    TrajectoryWriter(const TrajectoryWriter&) = delete;
+    TrajectoryWriter& operator=(const TrajectoryWriter&) = delete;
+
+    /// Why an unfinished file that was there is not continued; empty if it is, or there was none.
+    const std::string& note() const;
+    /// Rows that the file has: steps[0] to steps[rows() - 1] are stored.
+    std::uint64_t rows() const;
+
+    struct Resume {
+        std::uint64_t step = 0;  ///< the last stored one
+        StepMemory memory;
+    };
+    /// Sets the bodies to the last stored row of the file that is continued. None (bodies are left
+    /// alone) if there is no row yet.
+    std::optional<Resume> resume(Bodies& bodies) const;
+
+    /// The next row; facts.step must be the next of `steps`.
+    /// @param memory   of the world after the step, kept for resuming
+    void append(const StepFacts& facts, const Bodies& bodies, const StepMemory& memory);
+
+    /// After the last row: takes out what only resuming needs, checks, syncs, renames.
+    void finish();
+
+  private:
+    struct File;
+    std::unique_ptr<File> file_;
+};
+
+/// Reads a trajectory, finished or not. Shapes, types and sizes are checked before anything is
+/// read: memory is bounded by the bodies and by 1032 times the file's size (gzip's limit).
+/// Known limit: damage inside HDF5's own structures is left to libhdf5 to notice.
+/// Everything throws InputError with the path and the reason.
+class TrajectoryReader {
+  public:
+    explicit TrajectoryReader(const std::filesystem::path& path);
+    ~TrajectoryReader();
+    TrajectoryReader(const TrajectoryReader&) = delete;
+    TrajectoryReader& operator=(const TrajectoryReader&) = delete;
+
+    const TrajectoryHeader& header() const;
+    std::uint64_t rows() const;
+    const std::vector<std::uint64_t>& steps() const;  ///< ascending
+    const std::vector<double>& times() const;         ///< [s]
+
+    /// Sets position, rotor, velocity and angular velocity; the bodies must be as many as the
+    /// file's. Values that are not finite, or rotors not of length 1, are an error.
+    void read_row(std::uint64_t row, Bodies& bodies) const;
+
+    /// All that was appended besides the states, of every row.
+    std::vector<StepFacts> facts() const;
+
+  private:
+    struct File;
+    std::unique_ptr<File> file_;
+};
+
+}  // namespace tesserae::scenes

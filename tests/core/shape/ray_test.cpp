@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include "tests/core/shape/oracle.hpp"
+
+namespace tesserae {
+namespace {
+
+template <class S>
+struct ShapeRay : testing::Test {};
+using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+TYPED_TEST_SUITE(ShapeRay, Bounded);
+
+struct Line {
+    LVec origin, direction;
+    LVec at(long double t) const { return origin + t * direction; }
+};
+
+/// Where a ray comes nearest to a convex shape: the distance along it is convex, so thirds decide.
+long double nearest_parameter(const Oracle& oracle, const Line& ray, long double end) {
+    long double low = 0, high = end;
+    for (int i = 0; i < 130; ++i) {
+        const long double a = low + (high - low) / 3, b = high - (high - low) / 3;
+        if (oracle.signed_distance(ray.at(a)) > oracle.signed_distance(ray.at(b)))
+            low = a;
+        else
+            high = b;
+    }
+    return (low + high) / 2;
+}
+
+/// Rays from `far` sizes away, aimed around the shape; some parallel to axes, some inside.
+template <class S, class Check>
+void for_rays(std::uint64_t seed, const Check& check) {
+    RandomGeometry random(seed);
+    for (const S& shape : sample_shapes<S>(random, 50)) {
+        const Oracle oracle(shape);
+        for (int i = 0; i < 60; ++i) {
+            const double far = i % 5 == 0 ? 1e4 : i % 5 == 1 ? 0.0 : random.log_uniform(0.5, 100);
+            const Vec4 target = sample_point(shape, random);
+            Vec4 d = random.direction();
+            if (i % 3 == 0) d[random.engine() % 4] = 0;
+            if (i % 7 == 0) d = Vec4::Unit(random.engine() % 4) * (i % 2 ? 1 : -1);
+            d.normalize();
+            const Vec4 o = target - far * oracle.size * d;
+            check(shape, oracle, o, d, kRayAccuracy * (stable_norm(o) + oracle.size));
+        }
+    }
+}
+
+TYPED_TEST(ShapeRay, HitsTheZeroSetAndNothingBefore) {
+    int hits = 0;
+    for_rays<TypeParam>(431, [&](const auto& shape, const Oracle& oracle, const Vec4& o,
+                                 const Vec4& d, double error) {
+        const double t = ray_hit(shape, o, d);
+        if (t == kMiss) return;
+        ++hits;
+        const Line ray = {o.cast<long double>(), d.cast<long double>()};
+        const double start = double(oracle.signed_distance(ray.origin));
+        if (t == 0) {
+            EXPECT_LE(start, error);
+            return;
+        }
+        EXPECT_GE(start, -error);
+        EXPECT_NEAR(double(oracle.signed_distance(ray.at(t))), 0, error)
+            << oracle.size << " o " << o.transpose() << " d " << d.transpose();
+        for (int k = 1; k < 32; ++k) {
+            EXPECT_GE(double(oracle.signed_distance(ray.at(t * (k / 32.0L)))), -error);
+            EXPECT_GE(double(oracle.signed_distance(ray.at(t * (1 - std::pow(0.5L, k))))), -error);
+        }
+    });
+    EXPECT_GT(hits, 500);
+}
+
+TYPED_TEST(ShapeRay, MissesOnlyWhatItMisses) {
+    int misses = 0;
+    for_rays<TypeParam>(432, [&](const auto& shape, const Oracle& oracle, const Vec4& o,
+                                 const Vec4& d, double error) {
+        const Line ray = {o.cast<long double>(), d.cast<long double>()};
+        // Beyond this the ray only goes away.
+        const long double end = ray.origin.norm() + 2.0L * oracle.size;
+        const long double nearest =
+            oracle.signed_distance(ray.at(nearest_parameter(oracle, ray, end)));
+        const bool hit = ray_hit(shape, o, d) < kMiss;
+        misses += !hit;
+        if (double(nearest) > error) {
+            EXPECT_FALSE(hit);
+        }
+        if (double(nearest) < -error) {
+            EXPECT_TRUE(hit) << o.transpose() << " d " << d.transpose();
+        }
+    });
+    EXPECT_GT(misses, 200);
+}
+
+TYPED_TEST(ShapeRay, AgreesWithSphereTracing) {
+    int compared = 0;
+    for_rays<TypeParam>(433, [&](const auto& shape, const Oracle& oracle, const Vec4& o,
+                                 const Vec4& d, double error) {
+        const double t = ray_hit(shape, o, d);
+        const Line ray = {o.cast<long double>(), d.cast<long double>()};
+        long double traced = 0, distance = 0;
+        for (int step = 0; step < 2000; ++step) {
+            distance = oracle.signed_distance(ray.at(traced));
+            if (distance < 1e-17L * oracle.size) break;
+            traced += distance;
+            if (traced > ray.origin.norm() + 2 * oracle.size) break;
+        }
+        if (t == kMiss || distance >= 1e-17L * oracle.size) return;
+        // Along the ray an error of the surface counts by the secant of the angle of incidence.
+        const Vec4 n = normal(shape, ray.at(traced).template cast<double>());
+        const double cosine = std::abs(n.dot(d));
+        if (cosine < 0.05) return;
+        ++compared;
+        EXPECT_NEAR(t, double(traced), 2 * error / cosine)
+            << oracle.size << " o " << o.transpose() << " d " << d.transpose();
+        EXPECT_NEAR(t, double(traced), 1e-9 * std::max(double(traced), oracle.size));
+    });
+    EXPECT_GT(compared, 300);
+}
+
+TYPED_TEST(ShapeRay, StartsOnTheSurfaceAndLeavesOrEnters) {
+    RandomGeometry random(434);
+    for (const TypeParam& shape : sample_shapes<TypeParam>(random, 50))
+        for (int i = 0; i < 40; ++i) {
+            Vec4 p = sample_point(shape, random);
+            p -= signed_distance(shape, p) * normal(shape, p);
+            const Vec4 n = normal(shape, p), d = random.direction();
+            if (std::abs(n.dot(d)) < 1e-3) continue;
+            const double t = ray_hit(shape, p, d);
+            const double size = bounding_radius(shape);
+            // Outward: never again, if p is not within by rounding.
+            if (n.dot(d) > 0 && signed_distance(shape, p) > 0) {
+                EXPECT_EQ(t, kMiss) << p.transpose();
+            }
+            // Inward: at once. The distance is convex: from rounding at p to less than -1e-6 size
+            // at 1e-3 size it is zero before 1e3 times that rounding.
+            if (signed_distance(shape, p + 1e-3 * size * d) < -1e-6 * size) {
+                EXPECT_LE(t, 2e3 * kRayAccuracy * size) << p.transpose();
+            }
+            if (signed_distance(shape, p) <= 0) {
+                EXPECT_EQ(t, 0) << p.transpose();
+            }
+        }
+}
+
+TYPED_TEST(ShapeRay, GrazesWithinRounding) {
+    // Rays tangent to the shape, moved off or into it by far more than rounding: miss and hit.
+    RandomGeometry random(435);
+    for (const TypeParam& shape : sample_shapes<TypeParam>(random, 50))
+        for (int i = 0; i < 40; ++i) {
+            const Vec4 n = random.direction(), surface = support(shape, n);
+            Vec4 d = random.direction();
+            d = (d - d.dot(n) * n).normalized();
+            const double size = bounding_radius(shape);
+            const double far = random.log_uniform(0.1, 1e4) * size;
+            const double off = 2e-15 * (far + 2 * size);
+            const auto start = [&](double s) -> Vec4 { return surface + s * n - far * d; };
+            EXPECT_EQ(ray_hit(shape, start(2 * off), d), kMiss);
+            EXPECT_LT(ray_hit(shape, start(-2 * off), d), kMiss);
+        }
+}
+
+}  // namespace
+}  // namespace tesserae

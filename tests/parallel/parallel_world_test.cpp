@@ -1,0 +1,118 @@
+#include "parallel/parallel_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/dynamics/world.hpp"
+#include "parallel/threads.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+using namespace tesserae::testing;
+
+constexpr double kStep = 1.0 / 240;
+constexpr int kSteps = 300;
+
+struct Reference {
+    World world{heap_of_spheres(300), PhysicsSettings{}};
+    std::uint64_t contacts = 0;
+
+    Reference() {
+        for (int i = 0; i < kSteps; ++i) contacts += world.step(kStep).contacts;
+    }
+};
+
+const Reference& reference() {
+    static const Reference once;
+    return once;
+}
+
+class ParallelWorldOf : public ::testing::TestWithParam<int> {};
+
+TEST_P(ParallelWorldOf, ThreadsHasTheBitsOfTheSerialWorld) {
+    const Bodies start = heap_of_spheres(300);
+    Threads threads(GetParam());
+    ParallelWorld world(start, PhysicsSettings{});
+    std::uint64_t contacts = 0;
+    threads.run([&] {
+        for (int i = 0; i < kSteps; ++i) contacts += world.step(kStep).contacts;
+    });
+    EXPECT_GT(contacts, 10000u);
+    EXPECT_EQ(contacts, reference().contacts);
+    EXPECT_TRUE(same_bits(world.bodies(), reference().world.bodies()));
+    EXPECT_TRUE(same_values(world.memory(), reference().world.memory()));
+    EXPECT_FALSE(same_bits(world.bodies(), start));
+}
+
+INSTANTIATE_TEST_SUITE_P(Counts, ParallelWorldOf, ::testing::Values(1, 2, 3, 8));
+
+/// Many islands of a few spheres each: messages of several islands, and of one.
+Bodies towers() {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (int i = 0; i < 120; ++i) {
+        const int height = i % 40 == 0 ? 40 : 1 + i % 4;
+        for (int k = 0; k < height; ++k)
+            add(bodies, sphere_type(0.5, 1 + k % 3, 0.5),
+                {3.0 * (i % 11), 0.5 + 1.001 * k, 3.0 * (i / 11), 0.001 * (k % 2)});
+    }
+    return bodies;
+}
+
+TEST(ParallelWorld, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
+    World serial(towers(), PhysicsSettings{});
+    for (int i = 0; i < 150; ++i) serial.step(kStep);
+    Threads threads(3);
+    ParallelWorld world(towers(), PhysicsSettings{});
+    threads.run([&] {
+        for (int i = 0; i < 150; ++i) world.step(kStep);
+    });
+    EXPECT_TRUE(same_bits(world.bodies(), serial.bodies()));
+    EXPECT_TRUE(same_values(world.memory(), serial.memory()));
+}
+
+TEST(ParallelWorld, ContinuesASerialRun) {
+    World serial(towers(), PhysicsSettings{});
+    for (int i = 0; i < 40; ++i) serial.step(kStep);
+    ParallelWorld world(serial.bodies(), PhysicsSettings{});
+    world.memory() = serial.memory();
+    Threads threads(2);
+    threads.run([&] {
+        for (int i = 0; i < 40; ++i) world.step(kStep);
+    });
+    for (int i = 0; i < 40; ++i) serial.step(kStep);
+    EXPECT_TRUE(same_bits(world.bodies(), serial.bodies()));
+}
+
+TEST(ParallelWorld, NamesTheLowestBodyThatLeftTheFiniteRange) {
+    Bodies bodies = heap_of_spheres(2000);
+    for (BodyId id : {1900u, 1000u, 900u}) bodies.velocity[id] = {1e200, 0, 0, 0};
+    Threads threads(4);
+    ParallelWorld world(bodies, PhysicsSettings{});
+    threads.run([&] {
+        try {
+            world.step(kStep);
+            ADD_FAILURE() << "nothing thrown";
+        } catch (const LeftFiniteRange& error) {
+            EXPECT_EQ(error.body, 900u);
+        }
+    });
+    EXPECT_TRUE(same_bits(world.bodies(), bodies));
+}
+
+TEST(ParallelWorld, RefusesWhatTheSerialWorldRefuses) {
+    Bodies bodies;
+    add(bodies, box_type({1, 1, 1, 1}));
+    add(bodies, plane_type(Vec4::UnitY(), 0));
+    EXPECT_THROW(ParallelWorld(bodies, PhysicsSettings{}), InputError);
+    Threads threads(2);
+    ParallelWorld empty(Bodies{}, PhysicsSettings{});
+    threads.run([&] {
+        EXPECT_THROW(empty.step(0), InputError);
+        EXPECT_EQ(empty.step(kStep).contacts, 0u);
+    });
+}
+
+}  // namespace
+}  // namespace tesserae::parallel

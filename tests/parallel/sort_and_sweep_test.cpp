@@ -1,0 +1,89 @@
+#include "parallel/sort_and_sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/dynamics/motion.hpp"
+#include "core/dynamics/pairs.hpp"
+#include "core/dynamics/step.hpp"
+#include "parallel/threads.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+using namespace tesserae::testing;
+
+constexpr double kStep = 1.0 / 240;
+
+/// Everything that comes before the search for pairs.
+StepData prepared(const Simulation& simulation) {
+    StepData step;
+    begin_step(simulation, step, kStep);
+    const Range all{0, simulation.bodies.size()};
+    advance_first_half(simulation, step, all);
+    integrate_velocities(simulation, step, all);
+    update_bounds(simulation, step, all);
+    return step;
+}
+
+/// Compares with testing every two bodies, and with the spheres that touch by their distances.
+void check(const Bodies& bodies, SortAndSweep& sort_and_sweep, Threads& threads) {
+    const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
+    StepData step = prepared(simulation), reference = step;
+    threads.run([&] { sort_and_sweep.find_pairs(simulation, step); });
+    tesserae::find_pairs(simulation, reference);
+    ASSERT_EQ(step.pairs, reference.pairs);
+
+    for (BodyId a = 0; a < bodies.size(); ++a)
+        for (BodyId b = a + 1; b < bodies.size(); ++b) {
+            const auto* p = std::get_if<Hypersphere>(&bodies.type_of(a).shape);
+            const auto* q = std::get_if<Hypersphere>(&bodies.type_of(b).shape);
+            if (!p || !q || (!bodies.is_movable(a) && !bodies.is_movable(b))) continue;
+            const double distance = (step.position[a] - step.position[b]).norm();
+            if (distance > p->radius + q->radius) continue;
+            const BodyPair pair{a, b};
+            ASSERT_TRUE(std::binary_search(step.pairs.begin(), step.pairs.end(), pair))
+                << a << " " << b;
+        }
+}
+
+TEST(SortAndSweep, FindsThePairsThatTestingAllFinds) {
+    std::mt19937_64 engine(3);
+    std::uniform_real_distribution<> unit(0, 1);
+    SortAndSweep sort_and_sweep;
+    Threads threads(3);
+    for (int round = 0; round < 40; ++round) {
+        Bodies bodies;
+        const int count = static_cast<int>(engine() % 400);
+        const double size = 1 + 20 * unit(engine);
+        for (int i = 0; i < count; ++i) {
+            if (i % 150 == 40) add(bodies, plane_type(Vec4(1, 2, 3, 4).normalized(), size));
+            BodyType type = sphere_type(std::pow(10.0, 2 * unit(engine) - 2));  // 1 cm to 1 m
+            type.fixed_position = engine() % 6 == 0;
+            type.fixed_rotation = engine() % 2 == 0;
+            Vec4 x;
+            for (int k = 0; k < 4; ++k) x[k] = size * unit(engine) * (k == round % 4 ? 1 : 0.3);
+            const Vec4 v{100 * unit(engine) * (engine() % 8 == 0), 0, 0, 0};
+            add(bodies, type, x, v);
+        }
+        check(bodies, sort_and_sweep, threads);
+    }
+}
+
+TEST(SortAndSweep, FindsCoincidentAndTouchingBodies) {
+    SortAndSweep sort_and_sweep;
+    Threads threads(2);
+    Bodies bodies;
+    for (int i = 0; i < 40; ++i) add(bodies, sphere_type(0.5), {0, 1, 0, 0});
+    for (int i = 0; i < 40; ++i) add(bodies, sphere_type(0.5), {10.0 + i, 0, 0, 0});
+    for (int i = 0; i < 40; ++i) add(bodies, sphere_type(0.5), {-10, 0, 0, 10.0 + i});
+    check(bodies, sort_and_sweep, threads);
+    check(Bodies{}, sort_and_sweep, threads);
+}
+
+}  // namespace
+}  // namespace tesserae::parallel

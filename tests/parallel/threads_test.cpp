@@ -1,0 +1,57 @@
+#include "parallel/threads.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "core/error.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+TEST(GrantedCores, AreAtLeastOneAndNoMoreThanTheMachineHas) {
+    EXPECT_GE(granted_cores(), 1);
+    EXPECT_LE(granted_cores(), static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// As many tasks as threads, each of which waits until all have begun: only that many threads at
+/// once can get through.
+TEST(Threads, AllWorkAtOnceAlsoWhereTheyAreMoreThanTheCores) {
+    for (int count : {1, 2, 3, 8, 16}) {
+        Threads threads(count);
+        EXPECT_EQ(threads.count(), count);
+        std::mutex mutex;
+        std::condition_variable all_here;
+        std::set<std::thread::id> ids;
+        bool late = false;
+        threads.run([&] {
+            tbb::parallel_for(
+                0, count, 1,
+                [&](int) {
+                    std::unique_lock lock(mutex);
+                    ids.insert(std::this_thread::get_id());
+                    all_here.notify_all();
+                    const auto met = [&] { return static_cast<int>(ids.size()) == count || late; };
+                    if (!all_here.wait_for(lock, std::chrono::seconds(20), met)) late = true;
+                },
+                tbb::simple_partitioner());
+        });
+        EXPECT_FALSE(late) << count;
+        EXPECT_EQ(ids.size(), static_cast<std::size_t>(count));
+    }
+}
+
+TEST(Threads, LetExceptionsThrough) {
+    Threads threads(2);
+    EXPECT_THROW(threads.run([] { throw RunError("disk full"); }), RunError);
+}
+
+TEST(Threads, AreAtLeastOne) { EXPECT_THROW(Threads(0), InputError); }
+
+}  // namespace
+}  // namespace tesserae::parallel

@@ -1,0 +1,178 @@
+#include "render/shading.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/render/test_scene.hpp"
+
+namespace tesserae::render {
+namespace {
+
+constexpr double kBrdf = 3 / (4 * std::numbers::pi);
+
+/// The first surface along a direction from the world's origin, and what it sends back.
+struct Shaded {
+    Surface surface;
+    Color radiance;
+    FrameStats stats;
+};
+Shaded shade(const TestScene& scene, const Vec4& direction) {
+    const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
+    const Picture picture = scene.picture();
+    const Shading shading(picture, placed);
+    Shaded s;
+    Hit hit;
+    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
+        const double t =
+            hit_distance(placed, b, Vec4::Zero(), direction, kMiss, scene.settings, s.stats);
+        if (t < hit.distance) hit = {t, b};
+    }
+    s.surface = shading.surface(hit, direction);
+    s.radiance = shading.radiance(s.surface, s.stats);
+    return s;
+}
+
+TEST(Shading, PlaneIsLambertsFormula) {
+    // Radiance = albedo (3/(4 pi) E cos + sky), the cosine from the sun's direction.
+    Random random(41);
+    for (int i = 0; i < 1000; ++i) {
+        TestScene scene;
+        Hyperplane plane{random_direction(random), -2};
+        scene.add(plane, Vec4::Zero());
+        scene.materials[0].albedo = {0.2, 0.5, 0.9};
+        scene.lights.sky = {0.1, 0.2, 0.3};
+        Color expected = scene.lights.sky;
+        for (int k = 0; k < 3; ++k) {
+            Sun sun;
+            sun.direction = random_direction(random);
+            sun.irradiance = Color(1, 2, 3) * (k + 1);
+            sun.angle = 0;
+            scene.lights.suns.push_back(sun);
+            expected += kBrdf * sun.irradiance * std::max(0.0, -sun.direction.dot(plane.normal));
+        }
+        const Shaded s = shade(scene, -plane.normal);
+        EXPECT_LT((s.radiance - scene.materials[0].albedo * expected).abs().maxCoeff(), 1e-14);
+    }
+}
+
+TEST(Shading, SphereIsLambertsFormula) {
+    Random random(42);
+    for (int i = 0; i < 1000; ++i) {
+        TestScene scene;
+        const Vec4 centre = 5 * random_direction(random);
+        scene.add(Hypersphere{2}, centre);
+        Sun sun;
+        sun.direction = random_direction(random);
+        scene.lights.suns = {sun};
+        const Vec4 direction = (centre + random_vector(random, 0.7)).normalized();
+        const Shaded s = shade(scene, direction);
+        // The hit and the normal from the quadratic equation.
+        const double b = direction.dot(centre);
+        const double t = b - std::sqrt(b * b - 25 + 4);
+        const Vec4 normal = (t * direction - centre) / 2;
+        EXPECT_NEAR(s.surface.distance, t, 1e-13);
+        EXPECT_LT((s.surface.normal - normal).norm(), 1e-13);
+        const double cosine = std::max(0.0, -sun.direction.dot(normal));
+        EXPECT_NEAR(s.radiance[0], 0.8 * kBrdf * cosine, 1e-13);
+        // No ray where the sun is behind the surface.
+        EXPECT_EQ(s.stats.shadow_rays, cosine > 0 ? 1u : 0u);
+    }
+}
+
+TEST(Shading, SunWithoutLightCastsNoRays) {
+    TestScene scene;
+    scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+    Sun dark;
+    dark.irradiance = Color::Zero();
+    scene.lights.suns = {dark};
+    EXPECT_EQ(shade(scene, -Vec4::UnitY()).stats.shadow_rays, 0u);
+}
+
+TEST(Shading, NormalsOfTurnedBodiesAreTheGradient) {
+    // Central differences of the signed distance, whose error is 1e-5^2 times curvatures of a few.
+    Random random(43);
+    for (int i = 0; i < 600; ++i) {
+        TestScene scene;
+        const Vec4 centre = 4 * random_direction(random);
+        scene.add(random_shape(random, i % 3, 1), centre, random_rotor(random));
+        const Vec4 direction = centre.normalized();
+        const Surface s = shade(scene, direction).surface;
+        const Mat4 turn = to_matrix(scene.bodies.rotor[0]).transpose();
+        const auto f = [&](const Vec4& p) {
+            return std::visit(
+                [&](const auto& x) { return signed_distance(x, turn * (p - centre)); },
+                scene.bodies.types[0].shape);
+        };
+        // A little outside, where no shape has a kink.
+        const Vec4 p = s.point + 0.01 * s.normal;
+        for (int k = 0; k < 4; ++k) {
+            const Vec4 e = 1e-5 * Vec4::Unit(k);
+            EXPECT_NEAR(s.normal[k], (f(p + e) - f(p - e)) / 2e-5, 1e-7) << i;
+        }
+    }
+}
+
+TEST(Albedo, CheckerCellsAreCentredAndAlternate) {
+    Material m;
+    m.pattern = Pattern::kChecker;
+    m.pattern_size = 0.5;
+    EXPECT_TRUE((albedo_at(m, Vec4::Constant(0.24)) == m.albedo).all());
+    EXPECT_TRUE((albedo_at(m, Vec4::Constant(-0.24)) == m.albedo).all());
+    for (int axis = 0; axis < 4; ++axis)
+        for (int n = -3; n <= 3; ++n) {
+            const Color c = albedo_at(m, 0.5 * n * Vec4::Unit(axis));
+            EXPECT_TRUE((c == (n % 2 == 0 ? m.albedo : m.pattern_albedo)).all());
+        }
+    EXPECT_TRUE((albedo_at(m, Vec4(0.5, 0.5, 0, 0)) == m.albedo).all());
+    EXPECT_TRUE((albedo_at(m, Vec4(0.5, 0.5, 0, -0.5)) == m.pattern_albedo).all());
+}
+
+TEST(Albedo, StripesDependOnXAlone) {
+    Material m;
+    m.pattern = Pattern::kStripes;
+    m.pattern_size = 0.5;
+    Random random(44);
+    for (int i = 0; i < 1000; ++i) {
+        const Vec4 p = random_vector(random, 10);
+        const bool odd = std::lround(p.x() / 0.5) % 2 != 0;
+        EXPECT_TRUE((albedo_at(m, p) == (odd ? m.pattern_albedo : m.albedo)).all());
+    }
+}
+
+TEST(Albedo, FacesOnCellBoundariesDoNotFlicker) {
+    // The faces of this box lie exactly between cells 0 and 1, and those of the plane between -1
+    // and 0 or so: every point of a face takes the cells just below it.
+    for (int kind = 0; kind < 2; ++kind) {
+        TestScene scene;
+        scene.materials[0].pattern = Pattern::kChecker;
+        scene.materials[0].pattern_size = 1;
+        Random random(45);
+        const Rotor rotor = kind == 0 ? random_rotor(random) : Rotor{};
+        const Vec4 up = rotate(rotor, Vec4::UnitY());
+        if (kind == 0)
+            scene.add(Hyperbox{Vec4::Constant(3)}, -4 * up, rotor);
+        else
+            scene.add(Hyperplane{Vec4::UnitY(), -2.5}, Vec4::Zero());
+        const Mat4 turn = to_matrix(rotor);
+        for (int i = 0; i < 300; ++i) {
+            // Below: a point of the face in the middle of cell (k, l, m) across.
+            Vec4 cell(0, -2.5, 0, 0);
+            int sum = kind == 0 ? 1 : 0;
+            for (int axis : {0, 2, 3}) {
+                const int k = static_cast<int>(random() % 3) - 1;
+                cell[axis] = k + uniform(random, -0.4, 0.4);
+                sum += k;
+            }
+            // The box's top cell has index 1 along y; the plane's pattern starts at the plane.
+            const Surface s = shade(scene, (turn * cell).normalized()).surface;
+            const Material& m = scene.materials[0];
+            EXPECT_TRUE((s.albedo == (sum % 2 == 0 ? m.albedo : m.pattern_albedo)).all())
+                << kind << " " << i;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::render

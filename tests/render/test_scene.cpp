@@ -1,0 +1,141 @@
+#include "tests/render/test_scene.hpp"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace tesserae::render {
+
+BodyId TestScene::add(const Shape& shape, const Vec4& position, const Rotor& rotor,
+                      std::uint32_t material) {
+    BodyType type;
+    type.shape = shape;
+    bodies.types.push_back(type);
+    bodies.type.push_back(static_cast<std::uint32_t>(bodies.types.size() - 1));
+    bodies.position.push_back(position);
+    bodies.rotor.push_back(rotor);
+    bodies.velocity.push_back(Vec4::Zero());
+    bodies.angular_velocity.push_back({});
+    appearance.push_back({material, true});
+    return static_cast<BodyId>(bodies.size() - 1);
+}
+
+double uniform(Random& random, double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Vec4 random_vector(Random& random, double half_side) {
+    Vec4 v;
+    for (int i = 0; i < 4; ++i) v[i] = uniform(random, -half_side, half_side);
+    return v;
+}
+
+Vec4 random_direction(Random& random) {
+    std::normal_distribution<double> normal;
+    Vec4 v;
+    for (int i = 0; i < 4; ++i) v[i] = normal(random);
+    return v.normalized();
+}
+
+Rotor random_rotor(Random& random) {
+    const auto angle = [&] { return uniform(random, -2, 2); };
+    return exp(Bivector{angle(), angle(), angle(), angle(), angle(), angle()});
+}
+
+Shape random_shape(Random& random, int kind, double size) {
+    const auto side = [&] { return size * uniform(random, 0.3, 1.5); };
+    if (kind == 0) return Hypersphere{side()};
+    if (kind == 1) return Hypercapsule{0.5 * side(), 2 * side()};
+    return Hyperbox{2 * Vec4(side(), side(), side(), side())};
+}
+
+CameraDescription random_camera(Random& random, double distance) {
+    CameraDescription camera;
+    camera.look_at = random_vector(random, 0.5);
+    camera.position = camera.look_at + distance * random_direction(random);
+    camera.up = random_direction(random);
+    camera.fourth = random_direction(random);
+    return camera;
+}
+
+Folder::Folder() {
+    static std::atomic<int> number = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("tesserae-render-" + std::to_string(getpid()) + "-" + std::to_string(number++));
+    std::filesystem::create_directory(path_);
+}
+
+Folder::~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+std::size_t Folder::count() const {
+    std::size_t n = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++n;
+    return n;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+}
+
+Image read_exr(const std::filesystem::path& path) {
+    Imf::InputFile file(path.c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    Image image = {window.min.x,
+                   window.min.y,
+                   window.max.x - window.min.x + 1,
+                   window.max.y - window.min.y + 1,
+                   {},
+                   {}};
+    const std::size_t count =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    Imf::FrameBuffer buffer;
+    const auto attach = [&](const char* name, Imf::PixelType type, void* data) {
+        buffer.insert(name, Imf::Slice::Make(type, data, window.min, image.width, image.height));
+    };
+    const Imf::ChannelList& channels = file.header().channels();
+    for (auto c = channels.begin(); c != channels.end(); ++c) {
+        if (c.channel().type == Imf::UINT) {
+            image.ids.resize(count);
+            attach(c.name(), Imf::UINT, image.ids.data());
+        } else {
+            auto& plane = image.planes[c.name()];
+            plane.resize(count);
+            attach(c.name(), Imf::FLOAT, plane.data());
+        }
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+}
+
+FrameStats render(const TestScene& scene, const std::filesystem::path& exr,
+                  const std::filesystem::path& preview, int threads) {
+    const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism,
+                                              static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    const std::atomic<bool> stop = false;
+    FrameInfo info;
+    info.scene_name = "test";
+    return arena.execute([&] { return render_frame(scene.picture(), info, exr, preview, stop); });
+}
+
+Image picture_of(const TestScene& scene) {
+    const Folder folder;
+    render(scene, folder / "picture.exr");
+    return read_exr(folder / "picture.exr");
+}
+
+}  // namespace tesserae::render

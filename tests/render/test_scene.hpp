@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "render/frame.hpp"
+
+namespace tesserae::render {
+
+/// A picture that owns its parts. Every body has its own type, and by default material 0.
+struct TestScene {
+    Bodies bodies;
+    std::vector<Appearance> appearance;
+    std::vector<Material> materials = {Material{}};
+    CameraDescription camera;
+    Lights lights;
+    Settings settings;
+
+    BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
+               std::uint32_t material = 0);
+    Picture picture() const { return {bodies, appearance, materials, camera, lights, settings}; }
+};
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high);
+Vec4 random_vector(Random& random, double half_side);
+Vec4 random_direction(Random& random);
+Rotor random_rotor(Random& random);
+
+/// kind 0 hypersphere, 1 hypercapsule, 2 hyperbox, of about the given size.
+Shape random_shape(Random& random, int kind, double size);
+
+/// A camera anywhere and any way round, `distance` from a point near the origin that it looks at.
+CameraDescription random_camera(Random& random, double distance);
+
+/// A folder of the test's own, removed at the end.
+class Folder {
+  public:
+    Folder();
+    ~Folder();
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::size_t count() const;  ///< of the entries
+
+  private:
+    std::filesystem::path path_;
+};
+
+std::string bytes_of(const std::filesystem::path& file);
+
+/// An EXR file as OpenEXR's own reader sees it.
+struct Image {
+    int x0, y0, width, height;                         ///< data window
+    std::map<std::string, std::vector<float>> planes;  ///< half and float channels
+    std::vector<std::uint32_t> ids;                    ///< empty without objectid
+
+    float at(const std::string& channel, int x, int y) const {
+        return planes.at(channel)[index(x, y)];
+    }
+    std::uint32_t id(int x, int y) const { return ids[index(x, y)]; }
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x - x0);
+    }
+};
+Image read_exr(const std::filesystem::path& file);
+
+/// render_frame in an arena of `threads`.
+FrameStats render(const TestScene& scene, const std::filesystem::path& exr,
+                  const std::filesystem::path& preview = {}, int threads = 2);
+/// render_frame into a file of its own, read back.
+Image picture_of(const TestScene& scene);
+
+}  // namespace tesserae::render

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tesserae::scenes::testing {
+
+/// What a run of the program `tesserae` left.
+struct Outcome {
+    int status = -1;  ///< exit status; 1000 + signal if a signal ended it
+    std::string out, err;
+};
+
+/// Runs the program to its end; sends `signal` after `milliseconds` if that is not 0.
+Outcome tesserae(const std::vector<std::string>& arguments, int signal = 0, int milliseconds = 0);
+
+/// A folder for one test, emptied first, removed at the end.
+class Folder {
+  public:
+    explicit Folder(const std::string& name);
+    ~Folder();
+
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::string file(const std::string& name) const { return (path_ / name).string(); }
+    /// Writes a text file into it and returns its path.
+    std::string write(const std::string& name, const std::string& text) const;
+
+  private:
+    std::filesystem::path path_;
+};
+
+std::string content(const std::filesystem::path& file);
+
+/// All files below a folder, relative to it, ascending.
+std::vector<std::string> files_below(const std::filesystem::path& folder);
+
+/// A small scene that moves: 27 spheres of two sizes fall onto a plane, at 60 steps a second.
+std::string small_scene(double duration);
+
+}  // namespace tesserae::scenes::testing

@@ -1,0 +1,74 @@
+#include "scenes/timeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+Scene scene_of(double duration, double steps_per_second, double frames_per_second) {
+    Scene scene;
+    scene.physics = PhysicsSettings{};
+    scene.physics->duration = duration;
+    scene.physics->steps_per_second = steps_per_second;
+    scene.render.frames_per_second = frames_per_second;
+    return scene;
+}
+
+TEST(Timeline, StillHasFrameZeroOnly) {
+    const Scene still;
+    EXPECT_EQ(step_count(still), 0u);
+    EXPECT_EQ(frame_count(still), 1);
+    EXPECT_EQ(frame_count(scene_of(0, 240, 30)), 1);
+}
+
+TEST(Timeline, FramesAreThoseBeforeTheEnd) {
+    EXPECT_EQ(frame_count(scene_of(3, 240, 30)), 90);
+    EXPECT_EQ(frame_count(scene_of(2, 240, 24)), 48);
+    EXPECT_EQ(frame_count(scene_of(0.1, 240, 30)), 3);  // 0, 1/30, 2/30; 3/30 is not before 0.1
+    EXPECT_EQ(frame_count(scene_of(1e-9, 240, 30)), 1);
+    // The rule itself, at rates whose product with the duration rounds either way.
+    for (int rate = 1; rate < 200; ++rate)
+        for (double duration : {0.1, 0.3, 0.7, 1.1, 2.2, 3.3}) {
+            const int count = frame_count(scene_of(duration, 240, rate));
+            EXPECT_LT((count - 1) / double(rate), duration);
+            EXPECT_GE(count / double(rate), duration);
+        }
+}
+
+TEST(Timeline, FrameOnAStepNeedsThatStepAlone) {
+    for (int frame = 0; frame < 48; ++frame) {
+        const FrameInstant at = frame_instant(scene_of(2, 240, 24), frame);
+        EXPECT_EQ(at.step, 10u * frame);
+        EXPECT_EQ(at.fraction, 0);
+    }
+}
+
+TEST(Timeline, FrameBetweenStepsNeedsBoth) {
+    const Scene scene = scene_of(1, 100, 30);
+    const FrameInstant at = frame_instant(scene, 1);  // 3.33 steps
+    EXPECT_EQ(at.step, 3u);
+    EXPECT_NEAR(at.fraction, 1.0 / 3.0, 1e-12);
+    EXPECT_EQ(steps_for_frames(scene, {0, 1, 3}), (std::vector<std::uint64_t>{0, 3, 4, 10}));
+}
+
+TEST(Timeline, ParsesRangesInOrderWithoutRepeats) {
+    EXPECT_EQ(parse_frames("", 3), (std::vector<int>{0, 1, 2}));
+    EXPECT_EQ(parse_frames("5,0-4x2,2-3", 10), (std::vector<int>{0, 2, 3, 4, 5}));
+    EXPECT_EQ(parse_frames("0-9x1000000000", 10), (std::vector<int>{0}));
+}
+
+TEST(Timeline, RefusesBadRanges) {
+    for (const char* bad : {"a", "1-", "-1", "3-1", "0-9x0", "1,,2", "1,", "10", "0-10", "1 2",
+                            "99999999999", "1-2x", "1-2x-1", ","})
+        EXPECT_THROW(parse_frames(bad, 10), InputError) << bad;
+}
+
+TEST(Timeline, RefusesMoreFramesThanCanBeNumbered) {
+    EXPECT_THROW(frame_count(scene_of(1e300, 240, 30)), InputError);
+    EXPECT_THROW(step_count(scene_of(1e300, 240, 30)), InputError);
+}
+
+}  // namespace
+}  // namespace tesserae::scenes
