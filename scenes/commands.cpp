@@ -5,6 +5,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "core/dynamics/supported.hpp"
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
 #include "render/file_writer.hpp"
@@ -69,7 +70,11 @@ void print_plan(const Plan& plan) {
 /// What commands on a scene share: the checked scene, its plan, and the threads to work on.
 struct Work {
     explicit Work(const CommandLine& line)
-        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {}
+        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {
+        if (!plan.moves) return;
+        if (const auto reason = unsupported_contacts(scene.bodies))
+            throw InputError(fmt::format("{}: {}", line.file.string(), *reason));
+    }
 
     Scene scene;
     Plan plan;
@@ -121,8 +126,9 @@ void film_command(const CommandLine& line) {
         const bool simulates =
             trajectory.empty() &&
             (line.command == "run" ? scene.physics.has_value() : work.plan.moves);
-        claim_folder(scene, line.output, line.overwrite);
         if (simulates) {
+            require_folder_of(scene, line.output, line.overwrite);
+            create_folder(line.output);
             trajectory = line.output / "trajectory.h5";
             json["simulate"] = to_json(simulate(scene, work.plan, trajectory, line.store_every,
                                                 line.overwrite, line.quiet));

@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kSceneFile = "scene.toml";
+
 std::string read_text(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::ostringstream text;
@@ -57,6 +59,8 @@ std::string id_names(const Scene& scene) {
     return names.dump();
 }
 
+}  // namespace
+
 void create_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -64,31 +68,28 @@ void create_folder(const fs::path& folder) {
         throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
-}  // namespace
-
-void claim_folder(const Scene& scene, const fs::path& folder, bool overwrite) {
-    create_folder(folder);
-    const fs::path file = folder / "scene.toml";
-    if (fs::exists(file)) {
-        const std::string other = read_text(file);
-        if (other == scene.effective) return;
-        if (!overwrite)
-            throw InputError(fmt::format(
-                "{}: holds frames of another scene: {}; choose another folder, or --overwrite",
-                folder.string(), first_difference(other, scene.effective)));
-    }
-    render::write_file(file, scene.effective);
+void require_folder_of(const Scene& scene, const fs::path& folder, bool overwrite) {
+    const fs::path file = folder / kSceneFile;
+    if (overwrite || !fs::exists(file)) return;
+    const std::string other = read_text(file);
+    if (other != scene.effective)
+        throw InputError(fmt::format(
+            "{}: holds frames of another scene: {}; choose another folder, or --overwrite",
+            folder.string(), first_difference(other, scene.effective)));
 }
 
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
                 const fs::path& folder, bool overwrite, bool quiet) {
     const auto begin = std::chrono::steady_clock::now();
+    require_folder_of(scene, folder, overwrite);
     Poses poses(scene, frames, trajectory);
 
     FilmReport report;
     report.frames = folder / "frames";
     create_folder(report.frames);
     create_folder(folder / "preview");
+    if (!fs::exists(folder / kSceneFile) || overwrite)
+        render::write_file(folder / kSceneFile, scene.effective);
 
     render::FrameInfo info;
     info.scene_name = scene.name;

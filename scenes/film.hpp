@@ -16,9 +16,14 @@ struct FilmReport {
     std::filesystem::path frames, preview;  ///< folder of the frames; the last frame's preview
 };
 
-/// Makes `folder` this scene's: its scene.toml holds the effective scene that all its frames show.
-/// @throws InputError   it holds another scene's, and not `overwrite`; names the first difference
-void claim_folder(const Scene& scene, const std::filesystem::path& folder, bool overwrite);
+/// A folder holds the frames of one scene; its scene.toml is the effective text of that scene.
+/// @throws InputError   `folder` holds another scene's, and not `overwrite`; names the first
+/// difference
+void require_folder_of(const Scene& scene, const std::filesystem::path& folder, bool overwrite);
+
+/// Makes a folder and those above it.
+/// @throws RunError   with the path and the system's reason
+void create_folder(const std::filesystem::path& folder);
 
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of

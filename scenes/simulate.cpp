@@ -1,8 +1,10 @@
 #include "scenes/simulate.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/dynamics/energy.hpp"
+#include "core/dynamics/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
 #include "scenes/effective.hpp"
@@ -60,6 +62,19 @@ StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& fou
     return facts;
 }
 
+/// One step; a body that leaves the finite range is reported by its name.
+StepReport checked_step(const Scene& scene, parallel::ParallelWorld& world) {
+    try {
+        return world.step(1.0 / scene.physics->steps_per_second);
+    } catch (const LeftFiniteRange& error) {
+        const auto after = std::upper_bound(
+            scene.names.begin(), scene.names.end(), error.body,
+            [](BodyId body, const NamedBodies& named) { return body < named.first; });
+        throw RunError(fmt::format("{} (body {} is of \"{}\")", error.what(), error.body,
+                                   std::prev(after)->name));
+    }
+}
+
 /// Stores the rows that are missing. Every row holds a state and what the step that led to it
 /// found; the first, before any step, found nothing.
 void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
@@ -76,6 +91,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     std::optional<parallel::ParallelWorld> world;
     if (plan.moves) {
         world.emplace(std::move(start), *scene.physics);
+        memory.time = static_cast<double>(step) / scene.physics->steps_per_second;
         world->memory() = std::move(memory);
     }
     const Bodies& bodies = world ? world->bodies() : start;
@@ -86,7 +102,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     for (std::uint64_t row = writer.rows(); row < steps.size(); ++row) {
         for (; step < steps[row]; ++step) {
             if (stop_requested()) throw Stopped();
-            if (world) found = world->step(1.0 / scene.physics->steps_per_second);
+            if (world) found = checked_step(scene, *world);
             progress.update(step + 1);
         }
         writer.append(facts_of(scene, step, found, bodies), bodies,
