@@ -84,6 +84,9 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     const Origin origin{printable(file.string(), 400)};
     const SceneText text = cut_scene_text(scene.source, origin.place);
     TomlDocument document(text.rest, origin);
+    if (document.is_empty() && text.body_count == 0)
+        throw InputError(fmt::format(
+            "{}: is empty; expected tables such as [[body]], [camera] and [render]", origin.place));
     overrides.apply(document.root(), text.body_count);
 
     TableReader root(document.root(), origin, "scene file");

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <toml++/impl/forward_declarations.h>
-
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
+#include "scenes/toml_declarations.hpp"
 
 namespace tesserae::scenes {
 

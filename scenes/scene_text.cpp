@@ -145,25 +145,8 @@ class Cutter {
                                   kMaxRestKeys, kMaxRestValues));
     }
 
-    /// toml++ 3.3 takes for granted (undefined behaviour) that a header's name starts like one.
-    void require_name() const {
-        std::size_t i = at_ + 1;
-        const auto skip_blanks = [&] {
-            while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
-        };
-        skip_blanks();
-        if (i == at_ + 1 && i < text_.size() && text_[i] == '[') ++i, skip_blanks();
-        if (i == text_.size()) return;
-        const char c = text_[i];
-        const bool is_bare = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                             (c >= '0' && c <= '9') || c == '_' || c == '-';
-        if (!is_bare && c != '"' && c != '\'' && c != ']' && c != '[')
-            fail(i, "not valid TOML: expected a table's name");
-    }
-
     /// At a line that starts with '[' outside any value: decides to which piece the table belongs.
     void header() {
-        require_name();
         std::string name;
         for (std::size_t i = at_; i < text_.size() && name.size() < 16; ++i) {
             const char c = text_[i];

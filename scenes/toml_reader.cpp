@@ -104,6 +104,8 @@ TomlDocument::TomlDocument(std::string_view text, Origin origin) : origin_(std::
 
 TomlDocument::~TomlDocument() = default;
 
+bool TomlDocument::is_empty() const { return root_->empty(); }
+
 const toml::node* TableReader::find(std::string_view key) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
     return table_.get(key);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <toml++/impl/forward_declarations.h>
-
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "core/algebra/bivector.hpp"
 #include "core/shape/room.hpp"
 #include "render/description.hpp"
+#include "scenes/toml_declarations.hpp"
 
 namespace tesserae::scenes {
 
@@ -46,6 +45,7 @@ class TomlDocument {
     TomlDocument& operator=(const TomlDocument&) = delete;
 
     toml::table& root() { return *root_; }
+    bool is_empty() const;
     const Origin& origin() const { return origin_; }
 
   private:

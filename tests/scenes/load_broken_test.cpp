@@ -29,8 +29,6 @@ const std::vector<Broken>& broken_scenes() {
         {"[[body]]\nshape = \"hypersphere\"\nradius = 1\n\n[[body]]\nshape = oops\n",
          "6:9",
          {"not valid TOML"}},
-        {"[ = ]\n", "1:3", {"not valid TOML", "table's name"}},
-        {"[[.a]]\n", "1:3", {"not valid TOML", "table's name"}},
         // Unknown tables and keys.
         {"[phsyics]\n",
          "1:2",
@@ -227,6 +225,49 @@ TEST(BrokenScene, SaysWhereAndWhat) {
     }
 }
 
+/// Without the settings in scenes/toml_declarations.hpp each of these texts breaks an assertion of
+/// toml++ 3.3. The place is the character that it does not expect.
+TEST(TomlLibrary, RefusesWhatItTakesForGranted) {
+    const std::vector<std::pair<const char*, const char*>> texts = {
+        {"[ = ]\n", "1:3"},
+        {"[[.a]]\n", "1:3"},
+        {"[#]\n", "1:2"},
+        {"[\xd0\xb6]\n", "1:2"},
+        {"a = [ }\n", "1:7"},
+        {"a = [ 1, { b = [ } ]\n", "1:18"},
+        {"a = [\xe2\x80\xa8]\n", "1:6"},
+        {"a = 1979-05-27 1 2\n", "1:17"},
+        {"[[body]]\na = [1979-05-27 1]\n", "2:18"},
+    };
+    for (const auto& [text, place] : texts) {
+        const std::string message = error_of(text);
+        EXPECT_TRUE(message.starts_with(fmt::format("test.toml:{}: not valid TOML: ", place)))
+            << text << message;
+        EXPECT_TRUE(message.ends_with("unexpected character")) << text << message;
+    }
+    for (const char* set : {"physics.seed=[ }", "physics.seed=1979-05-27 1 2"}) {
+        const std::string message = error_of("[scene]", {set});
+        EXPECT_TRUE(message.starts_with(fmt::format("--set {}: not valid TOML: ", set))) << message;
+        EXPECT_TRUE(message.ends_with("unexpected character")) << message;
+    }
+}
+
+/// Every character may follow a line's ending backslash: toml++ 3.3 looks for blanks there, and for
+/// a third of the letters does so undefined (seen with the undefined-behaviour sanitizer).
+TEST(TomlLibrary, KnowsLettersFromBlanks) {
+    for (const char* letter : {"\u00e9", "\u0436", "\u2e5e", "\u3042", "\ufc26", "\u4e2d"}) {
+        const auto scene =
+            load_text(fmt::format("[[material]]\nname = \"\"\"\\\n  {}\"\"\"\n[[body]]\nshape = "
+                                  "'hypersphere'\nradius = 1\nmaterial = '{}'\n",
+                                  letter, letter));
+        EXPECT_EQ(scene.materials.size(), 2U) << letter;
+        EXPECT_TRUE(
+            error_of(fmt::format("{} = 1\n", letter)).starts_with("test.toml:1:1: not valid"));
+        EXPECT_TRUE(
+            error_of(fmt::format("a{} = 1\n", letter)).starts_with("test.toml:1:2: not valid"));
+    }
+}
+
 TEST(BrokenScene, ValuesAreCutAndEscaped) {
     const std::string name = "\\u001b[31m" + std::string(5000, 'x');
     const std::string message = error_of("[scene]\nname = \"" + name + "\"\n");
@@ -266,6 +307,13 @@ TEST(BrokenScene, TextThatIsNone) {
               "test.toml: is not text: byte 4 is zero; expected a scene file (TOML)");
     EXPECT_EQ(error_of(std::string_view("\xff\xfe[\0", 4)),
               "test.toml: is UTF-16 text; save it as UTF-8");
+}
+
+TEST(BrokenScene, TextWithoutTables) {
+    for (const char* text : {"", "\n", "\xef\xbb\xbf", " \t\r\n# a scene\n"})
+        EXPECT_EQ(error_of(text),
+                  "test.toml: is empty; expected tables such as [[body]], [camera] and [render]")
+            << text;
 }
 
 TEST(BrokenScene, TooLargeIsSeenBeforeReading) {

@@ -75,8 +75,8 @@ channels = ["position", "color"]
 exposure = -1.5
 )";
 
-TEST(LoadScene, EmptyFileHasAllDefaults) {
-    const Scene scene = load_text("");
+TEST(LoadScene, EmptyTableHasAllDefaults) {
+    const Scene scene = load_text("[scene]");
     EXPECT_EQ(scene.name, "test");
     EXPECT_FALSE(scene.physics);
     EXPECT_EQ(scene.bodies.size(), 0U);
@@ -123,7 +123,7 @@ TEST(LoadScene, ReadsEverything) {
 }
 
 TEST(LoadScene, EffectiveTextLoadsToItself) {
-    for (const std::string& text : {std::string(), kRich}) {
+    for (const std::string& text : {std::string("[scene]"), kRich}) {
         const Scene first = load_text(text);
         const Scene second = load_text(first.effective);
         EXPECT_EQ(first.effective, second.effective);
@@ -222,7 +222,7 @@ TEST(Overrides, ReachEveryTable) {
     EXPECT_EQ(cropped.render.crop->y1, 4);
     EXPECT_TRUE(cropped.effective.ends_with("\ncrop = [1, 2, 3, 4]\n"));
     // Tables that the file does not have, and bodies as inline tables.
-    EXPECT_EQ(load_text("", {"physics.seed=3"}).physics->seed, 3U);
+    EXPECT_EQ(load_text("[scene]", {"physics.seed=3"}).physics->seed, 3U);
     EXPECT_EQ(load_text("body = [{shape = 'hypersphere', radius = 1}]", {"body.body-0.mass=2"})
                   .bodies.types[0]
                   .mass,
@@ -322,7 +322,8 @@ TEST(TomlText, RealsReadBackAsTheSameBits) {
     for (int i = 0; i < 300; ++i) {
         const double value =
             std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 80) - 83);
-        const Scene scene = load_text("", {"render.max_distance=" + toml_text(value + 1e-15)});
+        const Scene scene =
+            load_text("[scene]", {"render.max_distance=" + toml_text(value + 1e-15)});
         ASSERT_EQ(scene.render.max_distance, value + 1e-15);
     }
 }
