@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include "scenes/trajectory_driver.hpp"
+
 namespace tesserae::scenes::hdf5 {
 namespace {
 
 /// gzip's level, usual 1: on 10^4 bodies in free flight level 4 saves 1 % and takes longer.
 constexpr unsigned kDeflateLevel = 1;
 
-/// The innermost entry of HDF5's error stack; of a failed system call only the system's words.
-std::string reason() {
+/// Throws the innermost entry of HDF5's error stack; of a failed system call the system's words.
+[[noreturn]] void throw_reason() {
     std::string text;
     const auto keep = [](unsigned, const H5E_error2_t* entry, void* to) -> herr_t {
         *static_cast<std::string*>(to) = entry->desc ? entry->desc : "";
@@ -21,8 +23,9 @@ std::string reason() {
     if (const std::size_t begin = text.find(kSystem); begin != std::string::npos) {
         text.erase(0, begin + kSystem.size());
         text.erase(std::min(text.find('\''), text.size()));
+        throw SystemFailure(text);
     }
-    return text.empty() ? "HDF5 gives no reason" : text;
+    throw Failure(text.empty() ? "HDF5 gives no reason" : text);
 }
 
 Handle property_list(hid_t of) { return {H5Pcreate(of), H5Pclose}; }
@@ -41,7 +44,7 @@ Handle dataspace(const Extent& extent) {
 }
 
 /// How files are opened: shared by creating and opening.
-Handle file_access() {
+Handle file_access(bool writable) {
     static const bool started = [] {
         // After a failed write HDF5 would try again while the program exits.
         checked(H5dont_atexit());
@@ -51,11 +54,12 @@ Handle file_access() {
     }();
     static_cast<void>(started);
     Handle access = property_list(H5P_FILE_ACCESS);
+    checked(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG));
     // Writers hold a lock of their own, from before HDF5 opens the file until it has its name.
     checked(H5Pset_file_locking(access.get(), false, true));
-    checked(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG));
-    // Structures change in the file only while it is flushed: between two flushes a killed process
-    // leaves what the last one wrote.
+    if (!writable) return access;
+    checked(H5Pset_driver(access.get(), checked(ordered_driver()), nullptr));
+    // Structures leave memory only while the file is flushed.
     H5AC_cache_config_t cache;
     cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
     checked(H5Pget_mdc_config(access.get(), &cache));
@@ -65,6 +69,17 @@ Handle file_access() {
     cache.decr_mode = H5C_decr__off;
     checked(H5Pset_mdc_config(access.get(), &cache));
     return access;
+}
+
+/// A link of another kind leads to other places, even to other files.
+void require_hard_links(hid_t parent, const std::string& path) {
+    for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+        const std::string part = path.substr(0, end);
+        H5L_info_t info;
+        checked(H5Lget_info(parent, part.c_str(), &info, H5P_DEFAULT));
+        if (info.type != H5L_TYPE_HARD) throw Failure(part + ": is a link to another place");
+        if (end == std::string::npos) return;
+    }
 }
 
 struct Selection {
@@ -87,7 +102,7 @@ Selection select_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t 
 
 template <class Result>
 Result checked(Result result) {
-    if (result < 0) throw Failure(reason());
+    if (result < 0) throw_reason();
     return result;
 }
 template herr_t checked(herr_t);
@@ -101,14 +116,14 @@ void Handle::close() {
 }
 
 Handle create_file(const std::filesystem::path& path) {
-    const Handle access = file_access();
+    const Handle access = file_access(true);
     const Handle creation = property_list(H5P_FILE_CREATE);
     checked(H5Pset_obj_track_times(creation.get(), false));
     return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose};
 }
 
 Handle open_file(const std::filesystem::path& path, bool writable) {
-    const Handle access = file_access();
+    const Handle access = file_access(writable);
     const unsigned mode = writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY;
     return {H5Fopen(path.c_str(), mode, access.get()), H5Fclose};
 }
@@ -119,11 +134,24 @@ Handle create_group(hid_t parent, const std::string& name) {
     return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT), H5Gclose};
 }
 
+Handle create_unnamed_group(hid_t file) {
+    const Handle creation = property_list(H5P_GROUP_CREATE);
+    checked(H5Pset_obj_track_times(creation.get(), false));
+    return {H5Gcreate_anon(file, creation.get(), H5P_DEFAULT), H5Gclose};
+}
+
+void replace_link(hid_t parent, const std::string& name, const Handle& object) {
+    remove_link(parent, name);
+    checked(H5Olink(object.get(), parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+}
+
 Handle open_group(hid_t parent, const std::string& name) {
+    require_hard_links(parent, name);
     return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose};
 }
 
 Handle open_dataset(hid_t parent, const std::string& name) {
+    require_hard_links(parent, name);
     return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose};
 }
 
@@ -177,6 +205,10 @@ std::string read_text(hid_t parent, const std::string& name, std::uint64_t most_
     if (checked(H5Tget_class(type.get())) != H5T_STRING ||
         checked(H5Tis_variable_str(type.get())) > 0 || !extent_of(dataset).empty())
         throw Failure(name + ": is not a text of fixed length");
+    const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+    if (H5Pget_layout(creation.get()) != H5D_CONTIGUOUS ||
+        H5Pget_external_count(creation.get()) != 0)
+        throw Failure(name + ": is not stored in one piece of this file");
     const std::size_t bytes = H5Tget_size(type.get());
     if (bytes > most_bytes) throw Failure(name + ": is longer than the file");
     const Handle memory = text_type(bytes);
@@ -251,7 +283,7 @@ void write_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count,
 
 void resize(const Handle& dataset, std::uint64_t rows) {
     Extent extent = extent_of(dataset);
-    extent[0] = rows;
+    if (std::exchange(extent[0], rows) == rows) return;
     checked(H5Dset_extent(dataset.get(), extent.data()));
 }
 

@@ -18,6 +18,12 @@ struct Failure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The system refused (disk, memory, rights, descriptors): it says nothing about the file's
+/// content.
+struct SystemFailure : Failure {
+    using Failure::Failure;
+};
+
 /// The result of a call that is negative if it failed. @throws Failure
 template <class Result>
 Result checked(Result result);
@@ -51,13 +57,19 @@ class Handle {
 
 using Extent = std::vector<hsize_t>;
 
-/// Opens without locks of HDF5's own; starts the library on the first call: errors are not printed,
-/// and nothing is written when the program exits.
+/// Opens without locks of HDF5's own (HDF5_USE_FILE_LOCKING=TRUE adds its lock to readers only);
+/// starts the library on the first call: errors are not printed, and nothing is written when the
+/// program exits. Files that are written go through ordered_driver().
 Handle create_file(const std::filesystem::path& path);
 Handle open_file(const std::filesystem::path& path, bool writable);
 
 /// Objects carry no times: equal content is equal bytes.
 Handle create_group(hid_t parent, const std::string& name);
+/// A group that nothing leads to yet.
+Handle create_unnamed_group(hid_t file);
+/// Gives an object the name of another, whose name it was; from then on a file has the new one.
+void replace_link(hid_t parent, const std::string& name, const Handle& object);
+/// Follow hard links only. @throws Failure
 Handle open_group(hid_t parent, const std::string& name);
 Handle open_dataset(hid_t parent, const std::string& name);
 bool has_link(hid_t parent, const std::string& name);
@@ -86,7 +98,7 @@ void read_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, 
                void* values);
 void write_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,
                 const void* values);
-/// Sets the first extent.
+/// Sets the first extent, if it is not that.
 void resize(const Handle& dataset, std::uint64_t rows);
 
 }  // namespace tesserae::scenes::hdf5

@@ -5,6 +5,6 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 install_packages "${packages[@]}"
-build "$root/build/release" -DCMAKE_BUILD_TYPE=Release
+build "$root/build/release" tesserae -DCMAKE_BUILD_TYPE=Release
 [ $# -gt 0 ] || set -- "$root/scenes/gallery/first.toml" -o "$root/out/first"
 exec "$root/build/release/tesserae" run "$@"

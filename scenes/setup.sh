@@ -41,15 +41,14 @@ install_packages() {
         apt-get install -y -qq --no-install-recommends $missing >&2
 }
 
-# build FOLDER CMAKE-OPTIONS...: configures once, then builds what changed. Prints only on failure
-# or where there was something to do.
+# build FOLDER TARGET CMAKE-OPTIONS...: configures once, then builds what changed.
 build() {
-    local folder=$1 log
-    shift
+    local folder=$1 target=$2 log
+    shift 2
     mkdir -p "$folder"
     log=$folder/configure.log
     if [ ! -f "$folder/build.ninja" ]; then
         cmake -S "$root" -B "$folder" -G Ninja "$@" >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
     fi
-    cmake --build "$folder" >&2 || exit 1
+    cmake --build "$folder" --target "$target" >&2 || exit 1
 }

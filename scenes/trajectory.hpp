@@ -36,17 +36,20 @@ struct StepFacts {
 /// pure function of what is appended, whether or not the run was interrupted in between.
 ///
 /// At least every two seconds of wall time during append(), and after the first row, everything
-/// goes to the system (H5Fflush), so that a process killed at any moment leaves a file that can be
-/// read and continued. It is not synced to the disk before finish(): that is needed against power
-/// cuts only, and would stall the run. Another process may read the growing file, not write it.
-/// Every failure (disk full, folder missing) throws RunError with the path and the reason; what was
-/// flushed before is kept under the unfinished name.
+/// goes to the system, in an order (trajectory_driver.hpp) in which a process killed at any moment
+/// leaves a file that can be read and continued, with all rows of the last flush. It is not synced
+/// to the disk before finish(): that is needed against power cuts only, and would stall the run.
+/// Another process may read the growing file, not write it. Every failure (disk full, folder
+/// missing) throws RunError with the path and the reason; what was flushed before is kept under the
+/// unfinished name.
 class TrajectoryWriter {
   public:
-    /// Continues an unfinished file of the same motion, else starts one.
+    /// Continues an unfinished file of the same motion and steps, else starts one.
     /// @param steps       all steps that will be stored, ascending
-    /// @param overwrite   an unfinished file of another motion is replaced
+    /// @param overwrite   an unfinished file of another motion or of other steps is replaced
     /// @throws InputError   such a file is there, and not `overwrite`
+    /// @throws RunError     another process has the file, or the system does not let it be read:
+    ///                      it is left as it is
     TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
                      std::vector<std::uint64_t> steps, bool overwrite);
     /// Without finish(): flushes, and leaves the unfinished file to be continued.
@@ -71,6 +74,9 @@ class TrajectoryWriter {
     /// @param memory   of the world after the step, kept for resuming
     void append(const StepFacts& facts, const Bodies& bodies, const StepMemory& memory);
 
+    /// Everything appended so far goes to the system now.
+    void flush();
+
     /// After the last row: takes out what only resuming needs, checks, syncs, renames.
     void finish();
 
@@ -82,6 +88,7 @@ class TrajectoryWriter {
 /// Reads a trajectory, finished or not. Shapes, types and sizes are checked before anything is
 /// read: memory is bounded by the bodies and by 1032 times the file's size (gzip's limit).
 /// Known limit: damage inside HDF5's own structures is left to libhdf5 to notice.
+/// Links to other places and datasets in other files are not followed.
 /// Everything throws InputError with the path and the reason.
 class TrajectoryReader {
   public:

@@ -44,7 +44,8 @@ void create_h5md(const Handle& file, const std::string& version) {
     const int h5md_version[2] = {1, 1}, module_version[2] = {1, 0};
     hdf5::add_attribute(root.get(), "version", H5T_STD_I32LE, H5T_NATIVE_INT, {2}, h5md_version);
     const Handle author = hdf5::create_group(root.get(), "author");
-    hdf5::add_text_attribute(author.get(), "name", "unknown");
+    // H5MD wants a name; a person's would make the bytes depend on who ran it.
+    hdf5::add_text_attribute(author.get(), "name", "tesserae");
     const Handle creator = hdf5::create_group(root.get(), "creator");
     hdf5::add_text_attribute(creator.get(), "name", "tesserae");
     hdf5::add_text_attribute(creator.get(), "version", version);
@@ -116,6 +117,22 @@ void share_steps(const Handle& file) {
             hdf5::hard_link(file.get(), from + name, element + name);
 }
 
+void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
+    hdf5::add_attribute(scene.get(), "bodies", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                        &header.bodies);
+    hdf5::add_attribute(scene.get(), "steps_per_second", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {},
+                        &header.steps_per_second);
+    hdf5::add_attribute(scene.get(), "store_every", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                        &header.store_every);
+    const std::pair<const char*, const std::string*> texts[] = {
+        {"name", &header.scene_name},
+        {"text", &header.source},
+        {"effective", &header.effective},
+        {"hash", &header.hash},
+        {"motion_hash", &header.motion_hash}};
+    for (const auto& [name, text] : texts) hdf5::create_text(scene.get(), name, *text);
+}
+
 /// Opens a dataset of 8-byte numbers whose axes after the first are as given.
 Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const Extent& row,
                     std::uint64_t file_bytes) {
@@ -126,10 +143,6 @@ Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const
     const Handle type(H5Dget_type(dataset.get()), H5Tclose);
     require(H5Tget_class(type.get()) == kind && H5Tget_size(type.get()) == 8,
             kind == H5T_FLOAT ? "is not of 64-bit reals" : "is not of 64-bit integers");
-    const Extent extent = hdf5::extent_of(dataset);
-    require(extent.size() == row.size() + 1 && std::equal(row.begin(), row.end(), ++extent.begin()),
-            "has another shape");
-
     // Nothing that reads other files or runs other code, and nothing that asks for memory beyond
     // what the file can hold.
     const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
@@ -144,6 +157,9 @@ Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const
                     filter == H5Z_FILTER_FLETCHER32,
                 "uses an unknown filter");
     }
+    const Extent extent = hdf5::extent_of(dataset);
+    require(extent.size() == row.size() + 1 && std::equal(row.begin(), row.end(), ++extent.begin()),
+            "has another shape");
     Extent chunk(extent.size());
     checked(H5Pget_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
     double chunk_bytes = 8, bytes = 8;
@@ -195,28 +211,17 @@ void create_layout(const Handle& file, const TrajectoryHeader& header) {
     create_observables(file);
     share_steps(file);
     hdf5::create_group(file.get(), "/parameters");
-    const Handle scene = hdf5::create_group(file.get(), kScene);
-    hdf5::add_attribute(scene.get(), "bodies", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
-                        &header.bodies);
-    hdf5::add_attribute(scene.get(), "steps_per_second", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {},
-                        &header.steps_per_second);
-    hdf5::add_attribute(scene.get(), "store_every", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
-                        &header.store_every);
-    write_scene_texts(file, header);
+    // The group that goes at the end is named first: see trajectory_driver.hpp.
+    hdf5::create_group(file.get(), kResume);
+    fill_scene(hdf5::create_group(file.get(), kScene), header);
 }
 
-void write_scene_texts(const Handle& file, const TrajectoryHeader& header) {
-    const Handle scene = hdf5::open_group(file.get(), kScene);
-    const std::pair<const char*, const std::string*> texts[] = {
-        {"name", &header.scene_name},
-        {"text", &header.source},
-        {"effective", &header.effective},
-        {"hash", &header.hash},
-        {"motion_hash", &header.motion_hash}};
-    for (const auto& [name, text] : texts) {
-        if (hdf5::has_link(scene.get(), name)) hdf5::remove_link(scene.get(), name);
-        hdf5::create_text(scene.get(), name, *text);
-    }
+void replace_scene(const Handle& file, const TrajectoryHeader& header) {
+    const Handle scene = hdf5::create_unnamed_group(file.get());
+    fill_scene(scene, header);
+    checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+    hdf5::replace_link(file.get(), kScene, scene);
+    checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
 }
 
 TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies,
@@ -257,15 +262,17 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
 std::uint64_t checked_file_bytes(const std::filesystem::path& path) {
     std::error_code error;
     const bool regular = std::filesystem::is_regular_file(path, error);
-    if (error) throw hdf5::Failure(error.message());
+    if (error) throw hdf5::SystemFailure(error.message());
     if (!regular) throw hdf5::Failure("is not a file");
     const std::uint64_t bytes = std::filesystem::file_size(path, error);
 
     // HDF5 File Format Specification 3.0, II.A: superblock version 0, at the file's beginning.
     unsigned char block[96] = {};
     std::ifstream in(path, std::ios::binary);
-    if (!in) throw hdf5::Failure(std::strerror(errno));
-    if (!in.read(reinterpret_cast<char*>(block), sizeof block) ||
+    if (!in) throw hdf5::SystemFailure(std::strerror(errno));
+    if (!in.read(reinterpret_cast<char*>(block), sizeof block) && !in.eof())
+        throw hdf5::SystemFailure(std::strerror(errno));
+    if (static_cast<std::size_t>(in.gcount()) < sizeof block ||
         std::memcmp(block, "\211HDF\r\n\032\n", 8) != 0)
         throw hdf5::Failure("is not an HDF5 file");
     const auto word = [&](std::size_t at) {

@@ -30,7 +30,7 @@ struct TrajectoryDatasets {
     std::array<const hdf5::Handle*, 10> all() const;
     /// Rows that every dataset has.
     std::uint64_t whole_rows() const;
-    /// Drops or adds rows in every dataset.
+    /// Drops or adds rows where a dataset has more or fewer.
     void resize(std::uint64_t rows) const;
 };
 
@@ -38,10 +38,13 @@ struct TrajectoryDatasets {
 std::array<const double*, 4> state_arrays(const Bodies& bodies);
 std::array<double*, 4> state_arrays(Bodies& bodies);
 
+/// The group of what only continuing needs.
+inline constexpr const char* kResume = "/parameters/resume";
+
 /// Everything but the rows. @throws hdf5::Failure
 void create_layout(const hdf5::Handle& file, const TrajectoryHeader& header);
-/// The texts of the scene, which may change while its motion stays the same.
-void write_scene_texts(const hdf5::Handle& file, const TrajectoryHeader& header);
+/// The scene's texts may change while its motion stays the same. Flushes.
+void replace_scene(const hdf5::Handle& file, const TrajectoryHeader& header);
 
 /// @throws hdf5::Failure   a shape, type, size or filter is not that of a trajectory
 TrajectoryDatasets open_datasets(const hdf5::Handle& file, std::uint64_t bodies,

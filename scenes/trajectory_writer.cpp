@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <chrono>
 #include <exception>
 
 #include "core/error.hpp"
 #include "render/partial_file.hpp"
+#include "scenes/effective.hpp"
 #include "scenes/resume_record.hpp"
 #include "scenes/trajectory.hpp"
 #include "scenes/trajectory_layout.hpp"
@@ -17,7 +19,6 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kFlushInterval(2);
 
 /// Two datasets of bytes take turns, so that one always holds the record of the last whole flush.
-constexpr const char* kResume = "/parameters/resume";
 constexpr const char* kSlots[2] = {"/parameters/resume/a", "/parameters/resume/b"};
 constexpr hsize_t kSlotChunk = 64 * 1024;
 
@@ -62,7 +63,11 @@ struct TrajectoryWriter::File {
         : lock(path), header(h), steps(std::move(s)) {}
 
     bool continue_leftover(bool overwrite);
-    std::optional<std::string> other_motion(const TrajectoryHeader& there);
+    TrajectoryHeader open_leftover();
+    bool take_leftover(bool overwrite);
+    void reopen();
+    std::optional<std::string> other_motion(const TrajectoryHeader& there) const;
+    std::optional<std::string> other_steps(const TrajectoryHeader& there) const;
     bool is_good(const ResumeRecord& candidate) const;
     bool find_record(std::uint64_t file_bytes);
     void start();
@@ -84,56 +89,80 @@ struct TrajectoryWriter::File {
     }
 };
 
-/// Why a leftover cannot be continued although it is whole; none if it can.
-std::optional<std::string> TrajectoryWriter::File::other_motion(const TrajectoryHeader& there) {
+/// Why a leftover that is whole goes with other settings; none if it can be continued.
+std::optional<std::string> TrajectoryWriter::File::other_motion(
+    const TrajectoryHeader& there) const {
     if (there.motion_hash != header.motion_hash)
-        return fmt::format("is of another motion (hash {}, here {})", there.motion_hash,
-                           header.motion_hash);
+        return fmt::format("is of another motion: {}",
+                           first_difference(there.effective, header.effective));
     if (there.bodies != header.bodies)
         return fmt::format("has {} bodies, here {}", there.bodies, header.bodies);
-    if (there.steps_per_second != header.steps_per_second ||
-        there.store_every != header.store_every)
-        return std::string("stores other steps");
+    if (there.steps_per_second != header.steps_per_second)
+        return fmt::format("has {} steps per second, here {}", there.steps_per_second,
+                           header.steps_per_second);
+    const auto stored = [](std::uint64_t every) {
+        return every == 0 ? std::string("the steps that frames need")
+                          : fmt::format("every {}. step", every);
+    };
+    if (there.store_every != header.store_every)
+        return fmt::format("stores {}, here {}", stored(there.store_every),
+                           stored(header.store_every));
     return std::nullopt;
 }
 
-/// The rows since the flush before are those that the record was made of, at the steps wanted.
-bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const try {
-    if (candidate.rows > steps.size() || candidate.rows > data.whole_rows()) return false;
-    std::vector<std::uint64_t> stored(candidate.rows);
-    hdf5::read_rows(data.step, 0, candidate.rows, H5T_NATIVE_UINT64, stored.data());
-    if (!std::equal(stored.begin(), stored.end(), steps.begin()) || stored.back() != candidate.step)
-        return false;
+/// The same by the rows that the leftover has.
+std::optional<std::string> TrajectoryWriter::File::other_steps(
+    const TrajectoryHeader& there) const {
+    std::vector<std::uint64_t> stored(record.rows);
+    hdf5::read_rows(data.step, 0, stored.size(), H5T_NATIVE_UINT64, stored.data());
+    const auto [a, b] = std::mismatch(stored.begin(), stored.end(), steps.begin(), steps.end());
+    // A file that was about to get its name can only be of all the steps.
+    const bool whole = !slots[0];
+    if (a == stored.end() && (b == steps.end() || !whole)) return std::nullopt;
+    const auto here = [&](bool any, std::uint64_t step) {
+        return any ? fmt::format("of step {}", step) : std::string("the end");
+    };
+    const std::string cause = first_difference(there.effective, header.effective);
+    return fmt::format("stores other steps: row {} is {}, here {}{}{}", a - stored.begin(),
+                       here(a != stored.end(), a != stored.end() ? *a : 0),
+                       here(b != steps.end(), b != steps.end() ? *b : 0), cause.empty() ? "" : "; ",
+                       cause);
+}
+
+/// The rows since the flush before are those that the record was made of.
+bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
+    if (candidate.rows > data.whole_rows()) return false;
     Bodies bodies = room_for(header.bodies);
     std::array<std::uint64_t, 2> hash = {};
+    StepFacts facts;
     for (std::uint64_t row = candidate.first; row < candidate.rows; ++row) {
-        StepFacts facts;
         read_row(data, row, facts, bodies);
         hash = hash_with_row(hash, facts, bodies);
     }
-    return hash == candidate.hash;
-} catch (const hdf5::Failure&) {
-    return false;
+    return hash == candidate.hash && facts.step == candidate.step;
 }
 
 /// The record of the last whole flush; none: false.
 bool TrajectoryWriter::File::find_record(std::uint64_t file_bytes) {
     // finish() takes the slots out once every row is flushed: then there is nothing to resume.
     if (!hdf5::has_link(file.get(), kResume)) {
-        if (data.whole_rows() != steps.size() || steps.empty()) return false;
-        std::vector<std::uint64_t> stored(steps.size());
-        hdf5::read_rows(data.step, 0, steps.size(), H5T_NATIVE_UINT64, stored.data());
-        if (stored != steps) return false;
-        record.rows = steps.size();
-        record.step = steps.back();
+        record.rows = data.whole_rows();
+        if (record.rows == 0) return false;
+        hdf5::read_rows(data.step, record.rows - 1, 1, H5T_NATIVE_UINT64, &record.step);
         return true;
     }
     bool found = false;
     for (int i = 0; i < 2; ++i) {
         slots[i] = hdf5::open_dataset(file.get(), kSlots[i]);
         const auto candidate = read_slot(slots[i], file_bytes);
-        if (!candidate || (found && candidate->rows <= record.rows) || !is_good(*candidate))
+        if (!candidate || (found && candidate->rows <= record.rows)) continue;
+        try {
+            if (!is_good(*candidate)) continue;
+        } catch (const hdf5::SystemFailure&) {
+            throw;
+        } catch (const hdf5::Failure&) {
             continue;
+        }
         record = *candidate;
         next_slot = 1 - i;
         found = true;
@@ -141,39 +170,70 @@ bool TrajectoryWriter::File::find_record(std::uint64_t file_bytes) {
     return found;
 }
 
-bool TrajectoryWriter::File::continue_leftover(bool overwrite) {
-    if (fs::file_size(lock.partial()) == 0) return false;
-    const auto anew = [&](const std::string& why) {
-        note = fmt::format("{}: {}; starting anew", lock.partial().string(), why);
-        forget();
-        return false;
-    };
-    try {
-        const std::uint64_t file_bytes = checked_file_bytes(lock.partial());
-        file = hdf5::open_file(lock.partial(), true);
-        const TrajectoryHeader there = read_header(file, file_bytes);
-        if (const auto other = other_motion(there)) {
-            if (overwrite) return anew(*other);
-            throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
-                                         lock.partial().string(), *other));
-        }
-        data = open_datasets(file, header.bodies, file_bytes);
-        if (!find_record(file_bytes)) return anew("holds no row that can be continued from");
-        rows = record.rows;
-        data.resize(rows);
-        if (there.source != header.source || there.effective != header.effective ||
-            there.hash != header.hash || there.scene_name != header.scene_name)
-            write_scene_texts(file, header);
-    } catch (const hdf5::Failure& failure) {
-        return anew(failure.what());
+/// @throws hdf5::Failure
+TrajectoryHeader TrajectoryWriter::File::open_leftover() {
+    const std::uint64_t file_bytes = checked_file_bytes(lock.partial());
+    file = hdf5::open_file(lock.partial(), true);
+    TrajectoryHeader there = read_header(file, file_bytes);
+    if (other_motion(there)) return there;
+    data = open_datasets(file, header.bodies, file_bytes);
+    if (!find_record(file_bytes)) throw hdf5::Failure("holds no row that can be continued from");
+    rows = record.rows;
+    return there;
+}
+
+/// Makes the leftover one of `rows` rows and of this scene, or refuses it.
+bool TrajectoryWriter::File::take_leftover(bool overwrite) {
+    const TrajectoryHeader there = open_leftover();
+    auto other = other_motion(there);
+    if (!other) other = other_steps(there);
+    if (other && overwrite) throw hdf5::Failure(*other);
+    if (other)
+        throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
+                                     lock.partial().string(), *other));
+    // One that was about to get its name is left as it is.
+    if (!slots[0]) return true;
+    const auto all = data.all();
+    const bool longer = std::any_of(all.begin(), all.end(), [&](const hdf5::Handle* dataset) {
+        return hdf5::extent_of(*dataset)[0] != rows;
+    });
+    const bool other_texts = there.source != header.source || there.effective != header.effective ||
+                             there.hash != header.hash || there.scene_name != header.scene_name;
+    if (!longer && !other_texts) return true;
+    // The datasets are shortened first, and in a flush of their own: what they free lies where the
+    // file on disk still has something.
+    data.resize(rows);
+    reopen();
+    if (other_texts) {
+        replace_scene(file, header);
+        reopen();
     }
     return true;
+}
+
+/// Forgets, as HDF5 does with a file, which places in it are free.
+void TrajectoryWriter::File::reopen() {
+    data = {};
+    for (hdf5::Handle& slot : slots) slot = {};
+    file.close();
+    open_leftover();
+}
+
+bool TrajectoryWriter::File::continue_leftover(bool overwrite) try {
+    return fs::file_size(lock.partial()) > 0 && take_leftover(overwrite);
+} catch (const hdf5::SystemFailure& failure) {
+    forget();
+    throw RunError(fmt::format("{}: cannot be continued: {}; remove it to start anew",
+                               lock.partial().string(), failure.what()));
+} catch (const hdf5::Failure& failure) {
+    note = fmt::format("{}: {}; starting anew", lock.partial().string(), failure.what());
+    forget();
+    return false;
 }
 
 void TrajectoryWriter::File::start() {
     file = hdf5::create_file(lock.partial());
     create_layout(file, header);
-    hdf5::create_group(file.get(), kResume);
     for (int i = 0; i < 2; ++i)
         slots[i] =
             hdf5::create_growing(file.get(), kSlots[i], H5T_STD_U8LE, {0}, {kSlotChunk}, false);
@@ -220,7 +280,7 @@ TrajectoryWriter::TrajectoryWriter(const fs::path& path, const TrajectoryHeader&
 TrajectoryWriter::~TrajectoryWriter() {
     if (!file_->file || file_->failed) return;
     try {
-        file_->writing([&] { file_->flush(); });
+        flush();
     } catch (const std::exception&) {
         // The flush before still stands.
     }
@@ -254,6 +314,10 @@ void TrajectoryWriter::append(const StepFacts& facts, const Bodies& bodies,
         f.record.memory = memory;
         if (f.rows == 1 || Clock::now() - f.last_flush >= kFlushInterval) f.flush();
     });
+}
+
+void TrajectoryWriter::flush() {
+    file_->writing([&] { file_->flush(); });
 }
 
 void TrajectoryWriter::finish() {

@@ -110,7 +110,7 @@ void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_
 
 TEST_F(TrajectoryTest, ReadsBackTheBitsWritten) {
     // From no body at all to several chunks a row (32768 positions fill one).
-    for (const std::size_t bodies : {0, 1, 7, 40'000}) {
+    for (const unsigned bodies : {0u, 1u, 7u, 40'000u}) {
         const std::uint64_t rows = bodies > 1000 ? 3 : 70;
         write_whole(rows, bodies);
         EXPECT_FALSE(fs::exists(partial_));
@@ -305,7 +305,7 @@ TEST_F(TrajectoryTest, RefusesASecondWriterAndAdmitsReaders) {
 
 TEST_F(TrajectoryTest, AFullDiskIsAnErrorAndLeavesNoFile) {
     // From too little for the layout to enough for most rows; what was flushed goes on later.
-    for (const rlim_t bytes : {1000, 20'000, 60'000, 150'000}) {
+    for (const unsigned bytes : {1000u, 20'000u, 60'000u, 150'000u}) {
         fs::remove(partial_);
         const int status = status_of_child([&] {
             ::signal(SIGXFSZ, SIG_IGN);
