@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "render/exr_writer.hpp"
-#include "render/preview.hpp"
+#include "render/file/exr_writer.hpp"
+#include "render/file/preview.hpp"
 #include "render/tile_image.hpp"
 #include "render/tiles.hpp"
 

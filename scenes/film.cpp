@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "core/error.hpp"
-#include "render/file_writer.hpp"
-#include "render/image_info.hpp"
-#include "scenes/effective.hpp"
+#include "render/file/file_writer.hpp"
+#include "render/file/image_info.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/poses.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "scenes/effective.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {

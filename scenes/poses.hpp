@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
-#include "scenes/trajectory.hpp"
+#include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
 

@@ -7,11 +7,11 @@
 #include "core/dynamics/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
-#include "scenes/effective.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"
 #include "scenes/timeline.hpp"
-#include "scenes/trajectory.hpp"
+#include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
 namespace {

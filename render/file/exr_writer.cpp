@@ -1,0 +1,152 @@
+#include "render/file/exr_writer.hpp"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfFramesPerSecond.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/error.hpp"
+#include "render/file/file_writer.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// OpenEXR's stream over the project's writer, which remembers failures that OpenEXR swallows.
+class Stream : public Imf::OStream {
+  public:
+    explicit Stream(const std::filesystem::path& path) : Imf::OStream(path.c_str()), writer(path) {}
+
+    void write(const char bytes[], int count) override {
+        writer.write(bytes, static_cast<std::size_t>(count));
+    }
+    std::uint64_t tellp() override { return writer.position(); }
+    void seekp(std::uint64_t position) override { writer.seek(position); }
+
+    FileWriter writer;
+};
+
+/// A channel of the file and where it lies in a Pixel.
+struct ChannelPlace {
+    const char* name;
+    Imf::PixelType type;
+    std::size_t offset;
+};
+
+std::vector<ChannelPlace> places_of(const Channels& wanted) {
+    constexpr std::size_t kColor = offsetof(Pixel, color), kAlbedo = offsetof(Pixel, albedo);
+    constexpr std::size_t kNormal = offsetof(Pixel, normal), kPosition = offsetof(Pixel, position);
+    std::vector<ChannelPlace> places;
+    const auto add = [&](bool want, std::initializer_list<ChannelPlace> list) {
+        if (!want) return;
+        for (const ChannelPlace& place : list) places.push_back(place);
+    };
+    add(wanted.color, {{"R", Imf::HALF, kColor},
+                       {"G", Imf::HALF, kColor + 2},
+                       {"B", Imf::HALF, kColor + 4},
+                       {"A", Imf::HALF, offsetof(Pixel, alpha)}});
+    add(wanted.depth, {{"Z", Imf::FLOAT, offsetof(Pixel, depth)}});
+    add(wanted.albedo, {{"albedo.R", Imf::HALF, kAlbedo},
+                        {"albedo.G", Imf::HALF, kAlbedo + 2},
+                        {"albedo.B", Imf::HALF, kAlbedo + 4}});
+    add(wanted.normal, {{"N.X", Imf::FLOAT, kNormal},
+                        {"N.Y", Imf::FLOAT, kNormal + 4},
+                        {"N.Z", Imf::FLOAT, kNormal + 8},
+                        {"N.W", Imf::FLOAT, kNormal + 12}});
+    add(wanted.position, {{"P.X", Imf::FLOAT, kPosition},
+                          {"P.Y", Imf::FLOAT, kPosition + 4},
+                          {"P.Z", Imf::FLOAT, kPosition + 8},
+                          {"P.W", Imf::FLOAT, kPosition + 12}});
+    add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
+    return places;
+}
+
+std::string exact(const Vec4& v) {
+    return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", v[0], v[1], v[2], v[3]);
+}
+
+Imf::Header header_of(const Settings& settings, const Crop& window, const FrameInfo& info,
+                      const CameraDescription& description, const Camera& camera) {
+    const Imath::Box2i display({0, 0}, {settings.width - 1, settings.height - 1});
+    const Imath::Box2i data({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1});
+    Imf::Header header(display, data);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.lineOrder() = Imf::RANDOM_Y;
+    const auto side = static_cast<unsigned>(settings.tile);
+    header.setTileDescription(Imf::TileDescription(side, side, Imf::ONE_LEVEL));
+    for (const ChannelPlace& place : places_of(settings.channels))
+        header.channels().insert(place.name, Imf::Channel(place.type));
+    Imf::addChromaticities(header, Imf::Chromaticities());
+    Imf::addFramesPerSecond(header, Imf::guessExactFps(settings.frames_per_second));
+
+    const auto text = [&](const char* name, const std::string& value) {
+        header.insert(name, Imf::StringAttribute(value));
+    };
+    text("tesserae/scene", info.scene_name);
+    text("tesserae/sceneHash", info.scene_hash);
+    text("tesserae/version", info.program_version);
+    text("tesserae/idNames", info.id_names);
+    text("tesserae/cameraOrigin", exact(camera.origin()));
+    text("tesserae/cameraRight", exact(camera.right()));
+    text("tesserae/cameraUp", exact(camera.up()));
+    text("tesserae/cameraForward", exact(camera.forward()));
+    text("tesserae/cameraFourth", exact(camera.fourth()));
+    header.insert("tesserae/fieldOfView", Imf::DoubleAttribute(description.field_of_view));
+    header.insert("tesserae/time", Imf::DoubleAttribute(info.time));
+    header.insert("tesserae/frame", Imf::IntAttribute(info.frame));
+    header.insert("tesserae/samples", Imf::IntAttribute(settings.samples));
+    return header;
+}
+
+}  // namespace
+
+struct ExrWriter::File {
+    Stream stream;
+    std::optional<Imf::TiledOutputFile> tiles;
+
+    explicit File(const std::filesystem::path& path) : stream(path) {}
+};
+
+ExrWriter::ExrWriter(const std::filesystem::path& path, const Settings& settings,
+                     const Crop& window, const FrameInfo& info,
+                     const CameraDescription& description, const Camera& camera)
+    : channels_(settings.channels), file_(std::make_unique<File>(path)) {
+    if (places_of(channels_).empty())
+        throw InputError("render.channels = []: an image needs at least one channel");
+    // No threads of OpenEXR's own: tiles come from threads enough.
+    file_->tiles.emplace(file_->stream, header_of(settings, window, info, description, camera), 0);
+}
+
+ExrWriter::~ExrWriter() = default;
+
+void ExrWriter::write(const TileImage& tile) {
+    // Channels lie interleaved in the tile's pixels.
+    const Imath::V2i corner(tile.x0, tile.y0);
+    Imf::FrameBuffer buffer;
+    for (const ChannelPlace& place : places_of(channels_)) {
+        const char* first = reinterpret_cast<const char*>(tile.pixels.data()) + place.offset;
+        buffer.insert(place.name,
+                      Imf::Slice::Make(place.type, first, corner, tile.width(), tile.y1 - tile.y0,
+                                       sizeof(Pixel),
+                                       sizeof(Pixel) * static_cast<std::size_t>(tile.width())));
+    }
+    file_->tiles->setFrameBuffer(buffer);
+    file_->tiles->writeTile(tile.column, tile.row);
+}
+
+void ExrWriter::finish() {
+    // Its destructor writes the table of tiles.
+    file_->tiles.reset();
+    file_->stream.writer.finish();
+}
+
+}  // namespace tesserae::render

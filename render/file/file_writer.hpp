@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "render/file/partial_file.hpp"
+
+namespace tesserae::render {
+
+/// The one way to write a file. Bytes go to PATH.partial; finish() checks, syncs and closes it,
+/// renames it to PATH and syncs the folder, so that a file under its final name is always whole.
+/// Without finish() the destructor removes what was written. The partial file is locked (flock): a
+/// second process that writes the same file is told so; a leftover of a killed one is overwritten.
+/// Any failure (disk full, folder missing or read-only, locked) throws RunError with the path and
+/// the system's reason, and is remembered: every later call throws it again.
+class FileWriter {
+  public:
+    explicit FileWriter(std::filesystem::path path);
+    ~FileWriter();
+    FileWriter(const FileWriter&) = delete;
+    FileWriter& operator=(const FileWriter&) = delete;
+
+    void write(const void* data, std::size_t bytes);
+    void seek(std::uint64_t position);
+    std::uint64_t position() const { return position_; }
+    void finish();
+
+  private:
+    void require_good() const;
+    void flush();
+    void write_at(std::uint64_t position, const char* data, std::size_t bytes);
+    [[noreturn]] void fail(const char* what, int error);
+
+    PartialFile file_;
+    std::string buffer_;  ///< the bytes just before position_, not yet in the file
+    std::uint64_t position_ = 0;
+    std::string failure_;  ///< message of the first failure
+};
+
+/// Writes a whole file at once, for example a report.
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace tesserae::render

@@ -1,0 +1,129 @@
+#include "render/file/preview.hpp"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+
+#include "core/error.hpp"
+#include "render/file/file_writer.hpp"
+
+namespace tesserae::render {
+namespace {
+
+constexpr int kMaxWidth = 1920, kMaxHeight = 4096;
+/// Steps of a summed value. sRGB's first code is 320 of them, and the largest square (35 x 35)
+/// still fits in 32 bits.
+constexpr double kOne = 1 << 20;
+
+/// sRGB code of a linear value in [0, 1] (IEC 61966-2-1).
+std::uint8_t srgb_code(double v) {
+    const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+/// Where libpng's bytes go and what went wrong on the way.
+struct PngTarget {
+    FileWriter* writer;
+    std::exception_ptr failure;  ///< of the writer: exceptions must not cross libpng's C frames
+    char message[120] = "";      ///< libpng's own
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+    auto* target = static_cast<PngTarget*>(png_get_error_ptr(png));
+    std::snprintf(target->message, sizeof target->message, "%s", message);
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void on_bytes(png_structp png, png_bytep bytes, png_size_t count) {
+    auto* target = static_cast<PngTarget*>(png_get_io_ptr(png));
+    try {
+        target->writer->write(bytes, count);
+        return;
+    } catch (...) {
+        target->failure = std::current_exception();
+    }
+    png_error(png, "write");
+}
+
+void on_flush(png_structp) {}
+
+/// All calls that can jump back here. Nothing in this frame has a destructor, and nothing that
+/// changes after setjmp is read after a jump.
+bool encode(png_structp png, png_infop info, PngTarget* target, int width, int height,
+            const std::uint8_t* rgb) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    png_set_write_fn(png, target, on_bytes, on_flush);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(png, info);
+    for (int y = 0; y < height; ++y)
+        png_write_row(png, rgb + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 3);
+    png_write_end(png, info);
+    return true;
+}
+
+}  // namespace
+
+Preview::Preview(const Crop& window, double exposure)
+    : window_(window), gain_(std::min(std::exp2(exposure), std::numeric_limits<double>::max())) {
+    const int w = window.x1 - window.x0, h = window.y1 - window.y0;
+    factor_ = std::max((w + kMaxWidth - 1) / kMaxWidth, (h + kMaxHeight - 1) / kMaxHeight);
+    width_ = (w + factor_ - 1) / factor_;
+    height_ = (h + factor_ - 1) / factor_;
+    sums_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+}
+
+void Preview::add(const TileImage& tile) {
+    for (int y = tile.y0; y < tile.y1; ++y)
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const auto column = static_cast<std::size_t>((x - window_.x0) / factor_);
+            const auto row = static_cast<std::size_t>((y - window_.y0) / factor_);
+            auto& sum = sums_[row * static_cast<std::size_t>(width_) + column];
+            const Pixel& pixel = tile.at(x, y);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double v = gain_ * static_cast<double>(static_cast<float>(pixel.color[i]));
+                sum[i] += static_cast<std::uint32_t>(std::lround(kOne * std::clamp(v, 0.0, 1.0)));
+            }
+        }
+}
+
+std::vector<std::uint8_t> Preview::codes() const {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(3 * sums_.size());
+    const int w = window_.x1 - window_.x0, h = window_.y1 - window_.y0;
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x) {
+            const int columns = std::min(factor_, w - x * factor_);
+            const int rows = std::min(factor_, h - y * factor_);
+            for (std::uint32_t sum :
+                 sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                       static_cast<std::size_t>(x)])
+                rgb.push_back(srgb_code(sum / (kOne * columns * rows)));
+        }
+    return rgb;
+}
+
+void Preview::write(const std::filesystem::path& path) const {
+    const std::vector<std::uint8_t> rgb = codes();
+    FileWriter writer(path);
+    PngTarget target = {&writer, nullptr};
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &target, on_error, on_warning);
+    png_infop info = png ? png_create_info_struct(png) : nullptr;
+    const bool done = info && encode(png, info, &target, width_, height_, rgb.data());
+    png_destroy_write_struct(&png, &info);
+    if (target.failure) std::rethrow_exception(target.failure);
+    if (!done)
+        throw RunError(fmt::format("{}: libpng: {}", path.string(),
+                                   target.message[0] ? target.message : "out of memory"));
+    writer.finish();
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,147 @@
+#include "scenes/load/effective.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace tesserae::scenes {
+namespace {
+
+std::string list(const double* values, int count) {
+    std::string text = "[";
+    for (int i = 0; i < count; ++i) {
+        if (i > 0) text += ", ";
+        text += toml_text(values[i]);
+    }
+    return text + "]";
+}
+
+/// Walks the lines of an effective text and knows in which table it is.
+class Walker {
+  public:
+    explicit Walker(std::string_view text) : rest_(text) { next(); }
+
+    bool at_end() const { return at_end_; }
+    std::string_view line() const { return line_; }
+    /// The key of a line "key = value"; empty for headers.
+    std::string_view key() const { return before_equals(); }
+    std::string_view value() const { return line_.substr(line_.find('=') + 2); }
+    /// "render", "body 3 \"crate\"".
+    std::string where() const {
+        if (header_.empty()) return "the text";
+        if (!header_.starts_with("[[")) return std::string(header_.substr(1, header_.size() - 2));
+        std::string text = fmt::format("{} {}", header_.substr(2, header_.size() - 4), index_);
+        return name_.empty() ? text : fmt::format("{} {}", text, name_);
+    }
+
+    void next() {
+        // A name is known to the lines after it, so that a changed name shows as a change.
+        if (key() == "name") name_ = value();
+        do {
+            at_end_ = rest_.empty();
+            const auto end = rest_.find('\n');
+            line_ = rest_.substr(0, end);
+            rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
+        } while (line_.empty() && !at_end_);
+        if (!line_.starts_with('[')) return;
+        index_ = line_ == header_ ? index_ + 1 : 0;
+        header_ = line_;
+        name_ = {};
+    }
+
+  private:
+    std::string_view before_equals() const {
+        const auto at = line_.find(" = ");
+        if (line_.starts_with('[') || at == std::string_view::npos) return {};
+        return line_.substr(0, at);
+    }
+
+    std::string_view rest_, line_, header_, name_;
+    std::size_t index_ = 0;
+    bool at_end_ = false;
+};
+
+}  // namespace
+
+std::string printable(std::string_view bytes, std::size_t limit) {
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        // Cut before a character, never inside one (UTF-8 continues with bytes 10xxxxxx).
+        if (text.size() >= limit && (static_cast<unsigned char>(bytes[i]) & 0xc0) != 0x80)
+            return text + "...";
+        const char c = bytes[i];
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '\n')
+            text += "\\n";
+        else if (c == '\t')
+            text += "\\t";
+        else if (c == '\r')
+            text += "\\r";
+        else if (code < 0x20 || code == 0x7f)
+            text += fmt::format("\\u{:04X}", code);
+        else
+            text += c;
+    }
+    return text;
+}
+
+std::string toml_text(double value) {
+    char buffer[32];
+    const auto result = std::to_chars(buffer, buffer + sizeof buffer, value);
+    return std::string(buffer, result.ptr);
+}
+
+std::string toml_text(std::int64_t value) { return fmt::format("{}", value); }
+std::string toml_text(bool value) { return value ? "true" : "false"; }
+std::string toml_text(const char* value) { return toml_text(std::string_view(value)); }
+
+std::string toml_text(std::string_view value) {
+    std::string text = "\"";
+    for (char c : value) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            text += '\\', text += c;
+        else if (code < 0x20 || code == 0x7f)
+            text += fmt::format("\\u{:04X}", code);
+        else
+            text += c;
+    }
+    return text + "\"";
+}
+
+std::string toml_text(const Vec4& value) { return list(value.data(), 4); }
+std::string toml_text(const render::Color& value) { return list(value.data(), 3); }
+
+std::string toml_text(const Bivector& b) {
+    return fmt::format("{{ xy = {}, xz = {}, xw = {}, yz = {}, yw = {}, zw = {} }}",
+                       toml_text(b.xy), toml_text(b.xz), toml_text(b.xw), toml_text(b.yz),
+                       toml_text(b.yw), toml_text(b.zw));
+}
+
+void EffectiveWriter::table(std::string_view header, Part part) {
+    const std::string_view gap = text_.empty() ? "" : "\n";
+    text_.append(gap).append(header).append("\n");
+    if (part == Part::kMotion) motion_.append(header).append("\n");
+}
+
+void EffectiveWriter::line(Part part, std::string_view name, std::string_view value) {
+    const std::size_t start = text_.size();
+    text_.append(name).append(" = ").append(value).append("\n");
+    if (part == Part::kMotion) motion_.append(text_, start);
+}
+
+std::string first_difference(const std::string& there, const std::string& here) {
+    Walker a(there), b(here);
+    while (!a.at_end() && !b.at_end() && a.line() == b.line()) a.next(), b.next();
+    if (a.at_end() && b.at_end()) return {};
+    const auto shown = [](const Walker& w) {
+        return w.at_end() ? std::string("nothing") : printable(w.line());
+    };
+    if (a.at_end() || b.at_end() || a.key().empty() || a.key() != b.key())
+        return fmt::format("{}: {} there, {} here", a.at_end() ? b.where() : a.where(), shown(a),
+                           shown(b));
+    return fmt::format("{}.{}: {} there, {} here", a.where(), a.key(), printable(a.value()),
+                       printable(b.value()));
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string_view>
+#include <unordered_map>
+
+#include "scenes/load/effective.hpp"
+#include "scenes/load/overrides.hpp"
+#include "scenes/load/scene_text.hpp"
+#include "scenes/load/toml_reader.hpp"
+#include "scenes/scene.hpp"
+
+// The sections of a scene. Each function reads one, checks it, fills the scene's part and appends
+// its canonical text.
+namespace tesserae::scenes {
+
+void load_name(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+void load_physics(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+
+/// Index of each material by name. Material 0 is the grey of bodies that name none.
+using MaterialNumbers = std::unordered_map<std::string, std::uint32_t>;
+MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& scene,
+                               EffectiveWriter& out);
+
+/// All [[body]], then all [[lattice]].
+void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
+                 const MaterialNumbers& materials, Overrides& overrides, Scene& scene,
+                 EffectiveWriter& out);
+
+void load_camera(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+void load_lights(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+void load_render(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+
+/// Refuses a value of a key whose feature is not built yet, unless it is the default.
+inline void require_built(TableReader& table, std::string_view key, bool is_default) {
+    if (!is_default) table.fail(key, "not yet built; leave it at its default");
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,358 @@
+#include "scenes/load/toml_reader.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/load/nearest_name.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// "file:line:column", or the --set that a value came from.
+std::string place_of(const toml::source_region& region, const Origin& origin) {
+    if (region.path) return *region.path;
+    if (!region.begin) return origin.place;
+    return fmt::format("{}:{}:{}", origin.place, region.begin.line + origin.lines_before,
+                       region.begin.column);
+}
+
+void append_value(std::string& out, const toml::node& node, std::size_t limit) {
+    if (out.size() > limit) return;
+    if (const auto* array = node.as_array()) {
+        out += '[';
+        for (const auto& element : *array) {
+            if (out.back() != '[') out += ", ";
+            if (out.size() > limit) return;
+            append_value(out, element, limit);
+        }
+        out += ']';
+    } else if (const auto* table = node.as_table()) {
+        out += "{ ";
+        for (const auto& [key, value] : *table) {
+            if (out.size() > limit) return;
+            if (out.back() != ' ' || out.size() > 2) out += out.ends_with("{ ") ? "" : ", ";
+            out += std::string(key.str()) + " = ";
+            append_value(out, value, limit);
+        }
+        out += " }";
+    } else if (const auto* text = node.as_string()) {
+        out += toml_text(std::string_view(text->get()).substr(0, 2 * limit));
+    } else if (const auto* integer = node.as_integer()) {
+        out += toml_text(integer->get());
+    } else if (const auto* real = node.as_floating_point()) {
+        out += toml_text(real->get());
+    } else if (const auto* flag = node.as_boolean()) {
+        out += toml_text(flag->get());
+    } else {
+        out += "a date or time";
+    }
+}
+
+std::string shown(const toml::node& node) {
+    constexpr std::size_t kLimit = 60;
+    std::string text;
+    append_value(text, node, kLimit);
+    return printable(text, kLimit);
+}
+
+std::string listed(std::span<const std::string_view> names) {
+    std::string text;
+    for (std::string_view name : names)
+        text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+    return text;
+}
+
+std::string expected_text(Interval i) {
+    const bool low = i.low > -kLargest, high = i.high < kLargest;
+    const std::string at_least =
+        i.low == kSmallest ? "> 0"
+                           : fmt::format("{} {}", i.low_open ? ">" : ">=", toml_text(i.low));
+    const std::string at_most = fmt::format("{} {}", i.high_open ? "<" : "<=", toml_text(i.high));
+    if (low && high) return fmt::format("expected a number {} and {}", at_least, at_most);
+    if (low) return fmt::format("expected a finite number {}", at_least);
+    if (high) return fmt::format("expected a finite number {}", at_most);
+    return "expected a finite number";
+}
+
+bool is_inside(double value, Interval i) {
+    // False for NaN.
+    return (i.low_open ? value > i.low : value >= i.low) &&
+           (i.high_open ? value < i.high : value <= i.high);
+}
+
+}  // namespace
+
+Interval interval_of(Rule rule) {
+    if (rule == Rule::kPositive) return {kSmallest, kLargest};
+    if (rule == Rule::kNonNegative) return {0, kLargest};
+    return {};
+}
+
+TomlDocument::TomlDocument(std::string_view text, Origin origin) : origin_(std::move(origin)) {
+    try {
+        root_ = std::make_unique<toml::table>(toml::parse(text));
+    } catch (const toml::parse_error& error) {
+        throw InputError(fmt::format("{}: not valid TOML: {}", place_of(error.source(), origin_),
+                                     printable(error.description(), 300)));
+    }
+}
+
+TomlDocument::~TomlDocument() = default;
+
+bool TomlDocument::is_empty() const { return root_->empty(); }
+
+const toml::node* TableReader::find(std::string_view key) {
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+    return table_.get(key);
+}
+
+bool TableReader::has(std::string_view key) { return find(key) != nullptr; }
+
+bool TableReader::require(std::string_view key, std::string_view expected) {
+    if (has(key)) return true;
+    missing_.push_back(fmt::format("{} is missing; {}", key, expected));
+    return false;
+}
+
+void TableReader::fail_at(const toml::node& node, std::string_view key,
+                          std::string_view what) const {
+    throw InputError(fmt::format("{}: {}: {} = {}: {}", place_of(node.source(), origin_), subject_,
+                                 printable(key), shown(node), what));
+}
+
+void TableReader::fail(std::string_view key, std::string_view what) {
+    const toml::node* node = find(key);
+    if (node == nullptr) fail_here(fmt::format("{}: {}", key, what));
+    fail_at(*node, key, what);
+}
+
+void TableReader::fail_here(std::string_view what) const {
+    throw InputError(fmt::format("{}: {}: {}", place_of(table_.source(), origin_), subject_, what));
+}
+
+bool TableReader::is_override(std::string_view key) {
+    const toml::node* node = find(key);
+    return node != nullptr && node->source().path != nullptr;
+}
+
+void TableReader::finish() {
+    for (const auto& [key, node] : table_) {
+        if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+        // A key from --set stands where its value does.
+        const auto& region = node.source().path ? node.source() : key.source();
+        std::string hint = did_you_mean(key.str(), known_);
+        if (hint.empty()) {
+            hint = "; known here:";
+            for (std::string_view name : known_) hint += fmt::format(" {}", name);
+        }
+        throw InputError(fmt::format("{}: {}: {} = {}: unknown {}{}", place_of(region, origin_),
+                                     subject_, printable(key.str()), shown(node),
+                                     node.is_table() || node.is_array_of_tables() ? "table" : "key",
+                                     hint));
+    }
+    if (!missing_.empty()) fail_here(missing_.front());
+}
+
+double TableReader::real_of(const toml::node& node, std::string_view key, Interval interval,
+                            std::string_view expected) const {
+    double value = 0;
+    if (const auto* real = node.as_floating_point())
+        value = real->get();
+    else if (const auto* integer = node.as_integer())
+        value = static_cast<double>(integer->get());
+    else
+        fail_at(node, key, fmt::format("wrong type; {}", expected));
+    if (!is_inside(value, interval)) {
+        const bool too_large = std::isfinite(value) && std::abs(value) > kLargest;
+        const bool too_small = value > 0 && value < kSmallest && interval.low == kSmallest;
+        fail_at(node, key,
+                too_large   ? fmt::format("{}, at most {} in size", expected, toml_text(kLargest))
+                : too_small ? fmt::format("{}, at least {}", expected, toml_text(kSmallest))
+                            : std::string(expected));
+    }
+    return value + 0.0;  // -0 becomes 0: the same scene, the same bits
+}
+
+std::int64_t TableReader::integer_of(const toml::node& node, std::string_view key, std::int64_t low,
+                                     std::int64_t high) const {
+    const std::string expected = high == std::numeric_limits<std::int64_t>::max()
+                                     ? fmt::format("expected an integer >= {}", low)
+                                     : fmt::format("expected an integer from {} to {}", low, high);
+    const auto* integer = node.as_integer();
+    if (integer == nullptr) fail_at(node, key, fmt::format("wrong type; {}", expected));
+    if (integer->get() < low || integer->get() > high) fail_at(node, key, expected);
+    return integer->get();
+}
+
+std::string TableReader::text_of(const toml::node& node, std::string_view key) const {
+    const auto* text = node.as_string();
+    if (text == nullptr) fail_at(node, key, "wrong type; expected a string");
+    return text->get();
+}
+
+void TableReader::require_known(std::string_view word, const toml::node& node, std::string_view key,
+                                std::span<const std::string_view> names) const {
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    fail_at(node, key,
+            fmt::format("expected {}{}{}", names.size() > 1 ? "one of " : "", listed(names),
+                        did_you_mean(word, names)));
+}
+
+const toml::array& TableReader::array_of(const toml::node& node, std::string_view key,
+                                         std::size_t count, std::string_view expected) const {
+    const auto* array = node.as_array();
+    if (array == nullptr) fail_at(node, key, fmt::format("wrong type; {}", expected));
+    if (array->size() != count)
+        fail_at(node, key, fmt::format("has {} values; {}", array->size(), expected));
+    return *array;
+}
+
+bool TableReader::read(std::string_view key, double& value, Interval interval) {
+    const toml::node* node = find(key);
+    if (node != nullptr) value = real_of(*node, key, interval, expected_text(interval));
+    return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, double& value, Rule rule) {
+    return read(key, value, interval_of(rule));
+}
+
+bool TableReader::read_reals(std::string_view key, double* values, std::size_t count,
+                             Interval interval) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto& array =
+        array_of(*node, key, count, fmt::format("expected an array of {} numbers", count));
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = real_of(*array.get(i), fmt::format("{}[{}]", key, i), interval,
+                            expected_text(interval));
+    return true;
+}
+
+bool TableReader::read(std::string_view key, Vec4& value, Rule rule) {
+    if (!read_reals(key, value.data(), 4, interval_of(rule))) return false;
+    if (rule == Rule::kNonZero && value.cwiseAbs().maxCoeff() < kSmallest)
+        fail(key, "expected a direction, not zero");
+    return true;
+}
+
+bool TableReader::read(std::string_view key, render::Color& value, Interval interval) {
+    return read_reals(key, value.data(), 3, interval);
+}
+
+bool TableReader::read(std::string_view key, Bivector& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    constexpr std::array<std::string_view, 6> kPlanes = {"xy", "xz", "xw", "yz", "yw", "zw"};
+    const std::array<double*, 6> parts = {&value.xy, &value.xz, &value.xw,
+                                          &value.yz, &value.yw, &value.zw};
+    const auto* table = node->as_table();
+    if (table == nullptr)
+        fail_at(*node, key, "wrong type; expected a table of planes such as { xy = 30, zw = 15 }");
+    TableReader planes(*table, origin_, fmt::format("{}: {}", subject_, key));
+    for (std::size_t i = 0; i < kPlanes.size(); ++i) planes.read(kPlanes[i], *parts[i], Interval{});
+    planes.finish();
+    return true;
+}
+
+bool TableReader::read(std::string_view key, bool& value) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* flag = node->as_boolean();
+    if (flag == nullptr) fail_at(*node, key, "wrong type; expected true or false");
+    value = flag->get();
+    return true;
+}
+
+bool TableReader::read(std::string_view key, std::string& value) {
+    const toml::node* node = find(key);
+    if (node != nullptr) value = text_of(*node, key);
+    return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, std::int64_t& value, std::int64_t low,
+                       std::int64_t high) {
+    const toml::node* node = find(key);
+    if (node != nullptr) value = integer_of(*node, key, low, high);
+    return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, int& value, int low, int high) {
+    std::int64_t wide = value;
+    const bool found = read(key, wide, low, high);
+    value = static_cast<int>(wide);
+    return found;
+}
+
+bool TableReader::read(std::string_view key, std::int64_t* values, std::size_t count,
+                       std::int64_t low, std::int64_t high) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto& array =
+        array_of(*node, key, count, fmt::format("expected an array of {} integers", count));
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = integer_of(*array.get(i), fmt::format("{}[{}]", key, i), low, high);
+    return true;
+}
+
+bool TableReader::read(std::string_view key, std::vector<std::string>& values,
+                       std::span<const std::string_view> allowed) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* array = node->as_array();
+    if (array == nullptr)
+        fail_at(*node, key, fmt::format("wrong type; expected an array of {}", listed(allowed)));
+    values.clear();
+    for (std::size_t i = 0; i < array->size(); ++i) {
+        const std::string element = fmt::format("{}[{}]", key, i);
+        values.push_back(text_of(*array->get(i), element));
+        require_known(values.back(), *array->get(i), element, allowed);
+        if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1)
+            fail_at(*array->get(i), element, "is listed twice");
+    }
+    return true;
+}
+
+bool TableReader::read(std::string_view key, std::size_t& value,
+                       std::span<const std::string_view> names) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const std::string word = text_of(*node, key);
+    require_known(word, *node, key, names);
+    value = static_cast<std::size_t>(std::find(names.begin(), names.end(), word) - names.begin());
+    return true;
+}
+
+bool TableReader::is_array(std::string_view key) {
+    const toml::node* node = find(key);
+    return node != nullptr && node->is_array();
+}
+
+const toml::table* TableReader::table(std::string_view key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return nullptr;
+    const auto* table = node->as_table();
+    if (table == nullptr) fail_at(*node, key, fmt::format("expected one table, [{}]", key));
+    return table;
+}
+
+std::vector<const toml::table*> TableReader::tables(std::string_view key) {
+    std::vector<const toml::table*> all;
+    const toml::node* node = find(key);
+    if (node == nullptr) return all;
+    const std::string expected = fmt::format("expected an array of tables, [[{}]]", key);
+    const auto* array = node->as_array();
+    if (array == nullptr) fail_at(*node, key, expected);
+    for (const auto& element : *array) {
+        if (!element.is_table()) fail_at(element, key, expected);
+        all.push_back(element.as_table());
+    }
+    return all;
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/algebra/bivector.hpp"
+#include "core/shape/room.hpp"
+#include "render/description.hpp"
+#include "scenes/load/toml_declarations.hpp"
+
+namespace tesserae::scenes {
+
+/// Every real of a scene is at most this in size (metres, seconds, kg, ...), so that squares,
+/// fourth powers and their products stay far inside the range of double.
+constexpr double kLargest = 1e15;
+/// Every size that must be positive (radius, side, frame rate) is at least this.
+constexpr double kSmallest = 1e-15;
+
+/// A closed interval that a real must lie in.
+struct Interval {
+    double low = -kLargest, high = kLargest;
+    bool low_open = false, high_open = false;
+};
+Interval interval_of(Rule rule);
+
+/// Where a piece of TOML text stands: file or "--set KEY=VALUE".
+struct Origin {
+    std::string place;
+    std::size_t lines_before = 0;
+};
+
+/// A parsed piece of text. Depth and size of the text must have been checked.
+class TomlDocument {
+  public:
+    /// @throws InputError   place:line:column: why it is not TOML
+    TomlDocument(std::string_view text, Origin origin);
+    ~TomlDocument();
+    TomlDocument(const TomlDocument&) = delete;
+    TomlDocument& operator=(const TomlDocument&) = delete;
+
+    toml::table& root() { return *root_; }
+    bool is_empty() const;
+    const Origin& origin() const { return origin_; }
+
+  private:
+    Origin origin_;
+    std::unique_ptr<toml::table> root_;
+};
+
+/// Reads one table's keys and knows which were asked for. Every function throws InputError:
+/// `file:line:column: subject: key = VALUE: what was expected`. Keys that are absent leave the
+/// value as it was and return false.
+class TableReader {
+  public:
+    /// @param subject   names the table in errors: "[physics]", "body 3 \"crate\""
+    TableReader(const toml::table& table, const Origin& origin, std::string subject)
+        : table_(table), origin_(origin), subject_(std::move(subject)) {}
+
+    bool has(std::string_view key);
+    /// Like `has`, and makes absence an error at the end, after misspelt keys had their say.
+    bool require(std::string_view key, std::string_view expected);
+
+    bool read(std::string_view key, double& value, Interval interval);
+    bool read(std::string_view key, Vec4& value, Rule rule);
+    bool read(std::string_view key, double& value, Rule rule);
+    bool read(std::string_view key, render::Color& value, Interval interval);
+    bool read(std::string_view key, Bivector& value);
+    bool read(std::string_view key, bool& value);
+    bool read(std::string_view key, std::string& value);
+    bool read(std::string_view key, std::int64_t& value, std::int64_t low, std::int64_t high);
+    bool read(std::string_view key, int& value, int low, int high);
+    /// An array of exactly `count` integers.
+    bool read(std::string_view key, std::int64_t* values, std::size_t count, std::int64_t low,
+              std::int64_t high);
+    bool read(std::string_view key, std::vector<std::string>& values,
+              std::span<const std::string_view> allowed);
+    /// One of the names; the value is its index.
+    bool read(std::string_view key, std::size_t& value, std::span<const std::string_view> names);
+    bool is_array(std::string_view key);
+
+    /// The subtable of that name, if there is one.
+    const toml::table* table(std::string_view key);
+    /// The tables of an array of tables, in file order.
+    std::vector<const toml::table*> tables(std::string_view key);
+
+    /// The value comes from --set, not from the file.
+    bool is_override(std::string_view key);
+    [[noreturn]] void fail(std::string_view key, std::string_view what);
+    [[noreturn]] void fail_here(std::string_view what) const;
+    /// Refuses unknown keys, then missing ones.
+    void finish();
+
+  private:
+    const toml::node* find(std::string_view key);
+    [[noreturn]] void fail_at(const toml::node& node, std::string_view key,
+                              std::string_view what) const;
+    double real_of(const toml::node& node, std::string_view key, Interval interval,
+                   std::string_view expected) const;
+    std::int64_t integer_of(const toml::node& node, std::string_view key, std::int64_t low,
+                            std::int64_t high) const;
+    std::string text_of(const toml::node& node, std::string_view key) const;
+    void require_known(std::string_view word, const toml::node& node, std::string_view key,
+                       std::span<const std::string_view> names) const;
+    const toml::array& array_of(const toml::node& node, std::string_view key, std::size_t count,
+                                std::string_view expected) const;
+    bool read_reals(std::string_view key, double* values, std::size_t count, Interval interval);
+
+    const toml::table& table_;
+    const Origin& origin_;
+    std::string subject_;
+    std::vector<std::string_view> known_;
+    std::vector<std::string> missing_;
+};
+
+}  // namespace tesserae::scenes

@@ -1,3 +1,0 @@
-#include "scenes/commands.hpp"
-
-int main(int argc, char** argv) { return tesserae::scenes::program(argc, argv); }

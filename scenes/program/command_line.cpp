@@ -1,0 +1,173 @@
+#include "scenes/program/command_line.hpp"
+
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+
+#include "core/error.hpp"
+#include "parallel/threads.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/load/nearest_name.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+/// Whole numbers of `text` between separators, exactly `count` of them.
+std::vector<int> numbers(const std::string& option, const std::string& text, char separator,
+                         std::size_t count, const char* expected) {
+    std::vector<int> values;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    while (values.size() < count) {
+        int value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc()) break;
+        values.push_back(value);
+        at = next;
+        if (at != end && *at == separator && values.size() < count)
+            ++at;
+        else
+            break;
+    }
+    if (values.size() != count || at != end)
+        throw InputError(fmt::format("{} {}: expected {}", option, text, expected));
+    return values;
+}
+
+/// Options of one subcommand, as typed.
+struct Typed {
+    std::string size, crop, integrator, intersector;
+    int samples = 0;
+};
+
+void add_common(CLI::App& app, CommandLine& line) {
+    app.add_option("--threads", line.threads, "threads (default: the cores granted to the process)")
+        ->check(CLI::Range(1, kMaxThreads));
+    app.add_flag("--quiet", line.quiet, "no progress line");
+    app.add_flag("--json", line.json, "one JSON object on standard output, at the end");
+}
+
+void add_scene(CLI::App& app, CommandLine& line) {
+    add_common(app, line);
+    app.add_option("scene", line.file, "scene file (TOML)")->required();
+    app.add_option("--set", line.sets,
+                   "one scene key, for example physics.iterations=20 or body.NAME.mass=2")
+        ->allow_extra_args(false);
+}
+
+void add_output(CLI::App& app, CommandLine& line, const char* what) {
+    app.add_option("-o,--output", line.output, what)->required();
+    app.add_flag("--overwrite", line.overwrite, "replace results of another scene");
+}
+
+void add_picture(CLI::App& app, CommandLine& line, Typed& typed) {
+    app.add_option("--frames", line.frames, "for example 0-239x2,300 (default: all)");
+    app.add_option("--size", typed.size, "WIDTHxHEIGHT, instead of the scene's");
+    app.add_option("--samples", typed.samples, "a pixel, instead of the scene's");
+    app.add_option("--crop", typed.crop, "x0,y0,x1,y1: pixels from the top left, half open");
+    app.add_option("--integrator", typed.integrator, "direct (path: not yet)");
+    app.add_option("--intersector", typed.intersector, "trace or analytic");
+}
+
+void add_simulation(CLI::App& app, CommandLine& line) {
+    app.add_option("--store-every", line.store_every,
+                   "store every K-th step (default: the steps that the frames need)")
+        ->check(CLI::PositiveNumber);
+}
+
+/// Each option that overrides a scene key becomes an entry of the same kind as --set.
+void append_overrides(const CLI::App& app, const Typed& typed, std::vector<std::string>& sets) {
+    const auto given = [&](const char* name) {
+        const CLI::Option* option = app.get_option_no_throw(name);
+        return option != nullptr && option->count() > 0;
+    };
+    if (given("--size")) {
+        const auto v = numbers("--size", typed.size, 'x', 2, "WIDTHxHEIGHT, for example 1920x1080");
+        sets.push_back(fmt::format("render.size=[{}, {}]", v[0], v[1]));
+    }
+    if (given("--samples")) sets.push_back(fmt::format("render.samples={}", typed.samples));
+    if (given("--crop")) {
+        const auto v = numbers("--crop", typed.crop, ',', 4, "x0,y0,x1,y1, for example 0,0,64,64");
+        sets.push_back(fmt::format("render.crop=[{}, {}, {}, {}]", v[0], v[1], v[2], v[3]));
+    }
+    if (given("--integrator")) sets.push_back("render.integrator=" + toml_text(typed.integrator));
+    if (given("--intersector"))
+        sets.push_back("render.intersector=" + toml_text(typed.intersector));
+}
+
+/// The library's own message for a misspelt command names neither it nor its neighbour.
+void require_known_command(const CLI::App& app, const std::string& word) {
+    std::vector<std::string> offered;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        if (word == command->get_name()) return;
+        if (!command->get_group().empty()) offered.push_back(command->get_name());
+    }
+    if (word.starts_with('-')) return;
+    const std::vector<std::string_view> names(offered.begin(), offered.end());
+    throw InputError(fmt::format("unknown command {}: expected one of {}{}", toml_text(word),
+                                 fmt::join(names, ", "), did_you_mean(word, names)));
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+    CommandLine line;
+    Typed typed;
+    CLI::App app("tesserae: rigid bodies in four dimensions, simulated and filmed", "tesserae");
+    app.set_version_flag("--version", "tesserae " TESSERAE_VERSION);
+    app.require_subcommand(1);
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+
+    CLI::App& run = *app.add_subcommand("run", "simulate, render, preview: the main job");
+    add_scene(run, line);
+    add_output(run, line, "folder for the trajectory, frames, previews and report");
+    add_picture(run, line, typed);
+    add_simulation(run, line);
+
+    CLI::App& simulate = *app.add_subcommand("simulate", "move the bodies, store a trajectory");
+    add_scene(simulate, line);
+    add_output(simulate, line, "trajectory file (HDF5)");
+    add_simulation(simulate, line);
+
+    CLI::App& render = *app.add_subcommand("render", "frames of a still, or of a trajectory");
+    add_scene(render, line);
+    add_output(render, line, "folder for the frames and previews");
+    render.add_option("--trajectory", line.trajectory,
+                      "made by tesserae simulate (default: simulates first where bodies move)");
+    add_picture(render, line, typed);
+
+    CLI::App& plan =
+        *app.add_subcommand("plan", "what a scene needs, what is left out, what it costs");
+    add_scene(plan, line);
+
+    CLI::App& info = *app.add_subcommand("info", "a summary of a scene, trajectory or image");
+    add_common(info, line);
+    info.add_option("file", line.file, "a .toml, .h5 or .exr file")->required();
+
+    for (const char* later : {"generate", "submit"})
+        app.add_subcommand(later, "not yet built")->allow_extras()->group("");
+
+    if (argc > 1) require_known_command(app, argv[1]);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        app.exit(help);
+        return line;
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} (tesserae --help, or tesserae COMMAND --help, tells more)",
+                                     error.what()));
+    }
+    const CLI::App& chosen = *app.get_subcommands().front();
+    line.command = chosen.get_name();
+    if (line.command == "generate" || line.command == "submit")
+        throw InputError(fmt::format("tesserae {}: not yet built", line.command));
+    append_overrides(chosen, typed, line.sets);
+    if (line.threads == 0) line.threads = parallel::granted_cores();
+    return line;
+}
+
+}  // namespace tesserae::scenes

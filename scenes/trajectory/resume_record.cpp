@@ -1,0 +1,100 @@
+#include "scenes/trajectory/resume_record.hpp"
+
+#include <cstring>
+
+#include "scenes/load/hash.hpp"
+#include "scenes/trajectory/trajectory_layout.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
+constexpr std::size_t kFixedBytes = 7 * 8;  ///< rows, first, hash, step, time, number of impulses
+constexpr std::size_t kFrontBytes = 3 * 8;  ///< length, hash
+
+template <class Value>
+void put(std::string& bytes, const Value& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class Value>
+void take(std::string_view& bytes, Value& value) {
+    std::memcpy(&value, bytes.data(), sizeof value);
+    bytes.remove_prefix(sizeof value);
+}
+
+}  // namespace
+
+std::string to_bytes(const ResumeRecord& record) {
+    std::string body;
+    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes);
+    put(body, record.rows);
+    put(body, record.first);
+    put(body, record.hash);
+    put(body, record.step);
+    put(body, record.memory.time);
+    put(body, static_cast<std::uint64_t>(record.memory.impulses.size()));
+    for (const ContactImpulse& impulse : record.memory.impulses) {
+        put(body, impulse.a);
+        put(body, impulse.b);
+        put(body, impulse.feature);
+        put(body, impulse.normal);
+        for (int axis = 0; axis < 4; ++axis) put(body, impulse.tangent[axis]);
+    }
+    std::string bytes;
+    bytes.reserve(kFrontBytes + body.size());
+    put(bytes, static_cast<std::uint64_t>(body.size()));
+    put(bytes, hash_of(body));
+    return bytes += body;
+}
+
+std::optional<ResumeRecord> to_record(std::string_view bytes) {
+    if (bytes.size() < kFrontBytes) return std::nullopt;
+    std::uint64_t length = 0;
+    std::array<std::uint64_t, 2> hash;
+    take(bytes, length);
+    take(bytes, hash);
+    if (length < kFixedBytes || length > bytes.size()) return std::nullopt;
+    bytes = bytes.substr(0, length);
+    if (hash_of(bytes) != hash) return std::nullopt;
+
+    ResumeRecord record;
+    std::uint64_t impulses = 0;
+    take(bytes, record.rows);
+    take(bytes, record.first);
+    take(bytes, record.hash);
+    take(bytes, record.step);
+    take(bytes, record.memory.time);
+    take(bytes, impulses);
+    if (bytes.size() % kImpulseBytes != 0 || impulses != bytes.size() / kImpulseBytes ||
+        record.first >= record.rows)
+        return std::nullopt;
+    record.memory.impulses.resize(impulses);
+    for (ContactImpulse& impulse : record.memory.impulses) {
+        take(bytes, impulse.a);
+        take(bytes, impulse.b);
+        take(bytes, impulse.feature);
+        take(bytes, impulse.normal);
+        for (int axis = 0; axis < 4; ++axis) take(bytes, impulse.tangent[axis]);
+    }
+    return record;
+}
+
+std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& before,
+                                           const StepFacts& facts, const Bodies& bodies) {
+    std::string parts;
+    put(parts, before);
+    put(parts, facts.step);
+    put(parts, facts.time);
+    put(parts, facts.report.contacts);
+    put(parts, facts.report.penetration);
+    put(parts, facts.kinetic_energy);
+    put(parts, facts.potential_energy);
+    const auto arrays = state_arrays(bodies);
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        put(parts, hash_of({reinterpret_cast<const char*>(arrays[i]),
+                            bodies.size() * kStateElements[i].width * sizeof(double)}));
+    return hash_of(parts);
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,303 @@
+#include "scenes/trajectory/trajectory_driver.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <new>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace tesserae::scenes::hdf5 {
+namespace {
+
+/// The smallest page of any machine: what a killed write changes wholly or not at all.
+constexpr haddr_t kPage = 4096;
+/// Structures begin at multiples of this, usual 8, as HDF5's own alignment inside them.
+constexpr haddr_t kAlignment = 8;
+/// Most bytes of one system call, usual 1 GiB; Linux moves at most 2 GiB - 4 KiB.
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+/// The longest address that off_t holds.
+constexpr haddr_t kMostAddress = (haddr_t{1} << 63) - 1;
+
+/// Where a superblock of version 0 holds the file's end.
+constexpr std::size_t kEndAt = 40;
+
+using Bytes = std::vector<unsigned char>;
+
+/// A structure that HDF5 has given out but that is not in the file yet.
+struct Piece {
+    H5FD_mem_t type;
+    Bytes bytes;
+};
+
+/// An open file. HDF5 keeps its own part in the base.
+struct OrderedFile : H5FD_t {
+    int descriptor = -1;
+    dev_t device = 0;
+    ino_t inode = 0;
+    haddr_t end = 0;        ///< of what is allocated
+    haddr_t known_end = 0;  ///< by the superblock that is in the file
+    std::map<haddr_t, Piece> held;
+    int broken = 0;  ///< errno of the first write that failed: nothing after it reaches the file
+};
+
+OrderedFile& ordered(H5FD_t* file) { return *static_cast<OrderedFile*>(file); }
+const OrderedFile& ordered(const H5FD_t* file) { return *static_cast<const OrderedFile*>(file); }
+
+/// Puts a failure on HDF5's stack. @return -1
+herr_t failed(const char* text) {
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_BADVALUE, "%s",
+             text);
+    return -1;
+}
+
+/// The same of a system call, in the words of HDF5's own drivers.
+herr_t failed_call(int error) {
+    const std::string text = std::generic_category().message(error);
+    H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_SYSERRSTR,
+             "errno = %d, error message = '%s'", error, text.c_str());
+    return -1;
+}
+
+/// Calls pread or pwrite until all is moved.
+/// @return bytes moved, fewer only at the file's end; -1 on failure, with errno
+template <class Call, class Byte>
+ssize_t move_all(Call call, int descriptor, Byte* bytes, std::size_t size, haddr_t at) {
+    std::size_t moved = 0;
+    while (moved < size) {
+        const ssize_t result = call(descriptor, bytes + moved, std::min(size - moved, kMostBytes),
+                                    static_cast<off_t>(at + moved));
+        if (result < 0 && errno == EINTR) continue;
+        if (result < 0) return -1;
+        if (result == 0) break;
+        moved += static_cast<std::size_t>(result);
+    }
+    return static_cast<ssize_t>(moved);
+}
+
+herr_t write_now(OrderedFile& f, haddr_t at, const unsigned char* bytes, std::size_t size) {
+    if (f.broken != 0) return failed_call(f.broken);
+    const ssize_t moved = move_all(::pwrite, f.descriptor, bytes, size, at);
+    if (moved >= 0 && static_cast<std::size_t>(moved) == size) return 0;
+    f.broken = moved < 0 ? errno : ENOSPC;
+    return failed_call(f.broken);
+}
+
+herr_t set_length(OrderedFile& f, haddr_t length) {
+    if (f.broken != 0) return failed_call(f.broken);
+    int result;
+    do result = ::ftruncate(f.descriptor, static_cast<off_t>(length));
+    while (result < 0 && errno == EINTR);
+    if (result == 0) return 0;
+    f.broken = errno;
+    return failed_call(f.broken);
+}
+
+haddr_t length_of(const OrderedFile& f) {
+    struct stat status;
+    return ::fstat(f.descriptor, &status) == 0 ? static_cast<haddr_t>(status.st_size) : 0;
+}
+
+/// The file's end as a superblock of version 0 tells it (HDF5 File Format Specification 3.0, II.A).
+haddr_t end_in(const unsigned char* superblock) {
+    static_assert(std::endian::native == std::endian::little);
+    haddr_t end;
+    std::memcpy(&end, superblock + kEndAt, sizeof end);
+    return end;
+}
+
+/// The order of structures that are in the file already: names, tree nodes from the root down, the
+/// headers that hold extents, and last the tables of groups, which point to names and headers.
+std::pair<int, int> order_of(const Piece& piece) {
+    const auto begins = [&](const char* signature) {
+        return piece.bytes.size() >= 8 && std::memcmp(piece.bytes.data(), signature, 4) == 0;
+    };
+    if (begins("TREE")) return {1, -static_cast<int>(piece.bytes[5])};
+    if (begins("SNOD")) return {3, 0};
+    return {piece.type == H5FD_MEM_LHEAP ? 0 : 2, 0};
+}
+
+/// Writes what is held, in the order that trajectory_driver.hpp gives.
+herr_t write_held(OrderedFile& f) {
+    if (f.held.empty()) return 0;
+    using Entry = std::pair<const haddr_t, Piece>;
+    std::vector<const Entry*> fresh, old;
+    const Entry* superblock = nullptr;
+    for (const Entry& entry : f.held) {
+        if (entry.second.type == H5FD_MEM_SUPER)
+            superblock = &entry;
+        else
+            (entry.first >= f.known_end ? fresh : old).push_back(&entry);
+    }
+    std::stable_sort(old.begin(), old.end(), [](const Entry* a, const Entry* b) {
+        return order_of(a->second) < order_of(b->second);
+    });
+    // A file that gets shorter keeps its old end until nothing points behind the new one.
+    const haddr_t end = superblock ? end_in(superblock->second.bytes.data()) : f.known_end;
+    std::vector<const Entry*> order = std::move(fresh);
+    if (superblock && end >= f.known_end) order.push_back(superblock);
+    order.insert(order.end(), old.begin(), old.end());
+    if (superblock && end < f.known_end) order.push_back(superblock);
+
+    if (length_of(f) < end && set_length(f, end) < 0) return -1;
+    for (const Entry* entry : order)
+        if (write_now(f, entry->first, entry->second.bytes.data(), entry->second.bytes.size()) < 0)
+            return -1;
+    f.known_end = end;
+    f.held.clear();
+    return 0;
+}
+
+H5FD_t* open_ordered(const char* name, unsigned flags, hid_t, haddr_t) try {
+    int mode = (flags & H5F_ACC_RDWR) != 0 ? O_RDWR : O_RDONLY;
+    if ((flags & H5F_ACC_TRUNC) != 0) mode |= O_TRUNC;
+    if ((flags & H5F_ACC_CREAT) != 0) mode |= O_CREAT;
+    if ((flags & H5F_ACC_EXCL) != 0) mode |= O_EXCL;
+    auto file = std::make_unique<OrderedFile>();
+    do file->descriptor = ::open(name, mode | O_CLOEXEC, 0666);
+    while (file->descriptor < 0 && errno == EINTR);
+    struct stat status;
+    unsigned char superblock[kEndAt + sizeof(haddr_t)];
+    ssize_t moved = -1;
+    if (file->descriptor >= 0 && ::fstat(file->descriptor, &status) == 0)
+        moved = move_all(::pread, file->descriptor, superblock, sizeof superblock, 0);
+    if (moved < 0) {
+        failed_call(errno);
+        if (file->descriptor >= 0) ::close(file->descriptor);
+        return nullptr;
+    }
+    file->device = status.st_dev;
+    file->inode = status.st_ino;
+    if (static_cast<std::size_t>(moved) == sizeof superblock) file->known_end = end_in(superblock);
+    return file.release();
+} catch (const std::bad_alloc&) {
+    failed("no memory");
+    return nullptr;
+}
+
+/// What is held by now is what a failure left: HDF5 has asked for its last flush.
+herr_t close_ordered(H5FD_t* file) {
+    const std::unique_ptr<OrderedFile> f(&ordered(file));
+    return ::close(f->descriptor) == 0 || errno == EINTR ? 0 : failed_call(errno);
+}
+
+int compare(const H5FD_t* a, const H5FD_t* b) {
+    const auto key = [](const OrderedFile& f) { return std::pair(f.device, f.inode); };
+    if (key(ordered(a)) == key(ordered(b))) return 0;
+    return key(ordered(a)) < key(ordered(b)) ? -1 : 1;
+}
+
+herr_t query(const H5FD_t*, unsigned long* flags) {
+    // Nothing that gathers structures of several kinds, or gives out places before they are used.
+    *flags = H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+    return 0;
+}
+
+haddr_t allocate(H5FD_t* file, H5FD_mem_t type, hid_t, hsize_t size) {
+    OrderedFile& f = ordered(file);
+    if (size > kMostAddress - f.end - kPage) return HADDR_UNDEF;
+    haddr_t at = (f.end + kAlignment - 1) / kAlignment * kAlignment;
+    const bool crosses = at / kPage != (at + size - 1) / kPage;
+    if (type != H5FD_MEM_DRAW && size <= kPage && crosses) at = (at / kPage + 1) * kPage;
+    f.end = at + size;
+    return at;
+}
+
+haddr_t allocated_end(const H5FD_t* file, H5FD_mem_t) { return ordered(file).end; }
+
+herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) {
+    ordered(file).end = end;
+    return 0;
+}
+
+haddr_t length(const H5FD_t* file, H5FD_mem_t) { return length_of(ordered(file)); }
+
+herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
+    const OrderedFile& f = ordered(file);
+    auto* bytes = static_cast<unsigned char*>(buffer);
+    const ssize_t moved = move_all(::pread, f.descriptor, bytes, size, at);
+    if (moved < 0) return failed_call(errno);
+    // Allocated but never written: zeros, as in HDF5's own drivers.
+    std::memset(bytes + moved, 0, size - static_cast<std::size_t>(moved));
+    // What is held is newer.
+    auto piece = f.held.upper_bound(at);
+    if (piece != f.held.begin()) --piece;
+    for (; piece != f.held.end() && piece->first < at + size; ++piece) {
+        const Bytes& held = piece->second.bytes;
+        const haddr_t begin = std::max(at, piece->first);
+        const haddr_t end = std::min<haddr_t>(at + size, piece->first + held.size());
+        if (begin < end)
+            std::memcpy(bytes + (begin - at), held.data() + (begin - piece->first), end - begin);
+    }
+    return 0;
+}
+
+herr_t write(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size,
+             const void* buffer) try {
+    OrderedFile& f = ordered(file);
+    const auto* bytes = static_cast<const unsigned char*>(buffer);
+    if (type == H5FD_MEM_DRAW) return write_now(f, at, bytes, size);
+    const auto after = f.held.upper_bound(at);
+    const bool behind = after != f.held.begin() && std::prev(after)->first != at &&
+                        std::prev(after)->first + std::prev(after)->second.bytes.size() > at;
+    if (behind || (after != f.held.end() && at + size > after->first))
+        return failed("a structure overlaps another that is not written yet");
+    f.held.insert_or_assign(at, Piece{type, Bytes(bytes, bytes + size)});
+    return 0;
+} catch (const std::bad_alloc&) {
+    return failed("no memory");
+}
+
+herr_t flush(H5FD_t* file, hid_t, hbool_t) { return write_held(ordered(file)); }
+
+/// HDF5 asks for this in every flush, but while closing it is its last word.
+herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
+    OrderedFile& f = ordered(file);
+    if (!closing) return 0;
+    if (write_held(f) < 0) return -1;
+    const haddr_t end = std::max(f.end, f.known_end);
+    return length_of(f) == end ? 0 : set_length(f, end);
+}
+
+H5FD_class_t driver_class() {
+    H5FD_class_t driver = {};
+    driver.name = "tesserae_ordered";
+    driver.maxaddr = kMostAddress;
+    driver.fc_degree = H5F_CLOSE_STRONG;
+    driver.open = open_ordered;
+    driver.close = close_ordered;
+    driver.cmp = compare;
+    driver.query = query;
+    driver.alloc = allocate;
+    driver.get_eoa = allocated_end;
+    driver.set_eoa = set_allocated_end;
+    driver.get_eof = length;
+    driver.read = read;
+    driver.write = write;
+    driver.flush = flush;
+    driver.truncate = truncate;
+    const H5FD_mem_t map[] = H5FD_FLMAP_DICHOTOMY;
+    std::copy(std::begin(map), std::end(map), driver.fl_map);
+    return driver;
+}
+
+}  // namespace
+
+hid_t ordered_driver() {
+    static const H5FD_class_t driver = driver_class();
+    static const hid_t id = H5FDregister(&driver);
+    return id;
+}
+
+}  // namespace tesserae::scenes::hdf5

@@ -1,0 +1,320 @@
+#include "scenes/trajectory/trajectory_layout.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+
+namespace tesserae::scenes {
+namespace {
+
+using hdf5::checked;
+using hdf5::Extent;
+using hdf5::Handle;
+
+static_assert(sizeof(Vec4) == 32 && sizeof(Rotor) == 64 && sizeof(Bivector) == 48 &&
+                  std::is_standard_layout_v<Rotor>,
+              "states are written as they lie in memory");
+
+constexpr const char* kBodies = "/particles/bodies";
+constexpr const char* kScene = "/parameters/scene";
+
+/// Bytes of a chunk of states, usual 1 MiB (HDF5's chunk cache holds one). A chunk never spans
+/// rows: compressed chunks that grow are moved, and their old place, which the last flush still
+/// points to, is used again; so a chunk is written once.
+constexpr std::uint64_t kChunkBytes = 1 << 20;
+/// Rows of a chunk of the 8-byte columns: uncompressed, rewritten in place with the same old rows.
+constexpr std::uint64_t kColumnChunk = 1024;
+/// The most that gzip can shrink anything.
+constexpr std::uint64_t kMostCompression = 1032;
+
+std::string element_path(const char* name) { return std::string(kBodies) + "/" + name; }
+
+Handle create_column(hid_t parent, const std::string& name, hid_t type, const char* unit) {
+    Handle column = hdf5::create_growing(parent, name, type, {0}, {kColumnChunk}, false);
+    if (*unit) hdf5::add_text_attribute(column.get(), "unit", unit);
+    return column;
+}
+
+void create_h5md(const Handle& file, const std::string& version) {
+    const Handle root = hdf5::create_group(file.get(), "/h5md");
+    const int h5md_version[2] = {1, 1}, module_version[2] = {1, 0};
+    hdf5::add_attribute(root.get(), "version", H5T_STD_I32LE, H5T_NATIVE_INT, {2}, h5md_version);
+    const Handle author = hdf5::create_group(root.get(), "author");
+    // H5MD wants a name; a person's would make the bytes depend on who ran it.
+    hdf5::add_text_attribute(author.get(), "name", "tesserae");
+    const Handle creator = hdf5::create_group(root.get(), "creator");
+    hdf5::add_text_attribute(creator.get(), "name", "tesserae");
+    hdf5::add_text_attribute(creator.get(), "version", version);
+    const Handle modules = hdf5::create_group(root.get(), "modules");
+    for (const char* name : {"tesserae", "units"}) {
+        const Handle module = hdf5::create_group(modules.get(), name);
+        hdf5::add_attribute(module.get(), "version", H5T_STD_I32LE, H5T_NATIVE_INT, {2},
+                            module_version);
+    }
+}
+
+void create_box(hid_t bodies) {
+    const Handle box = hdf5::create_group(bodies, "box");
+    const int dimension = 4;
+    hdf5::add_attribute(box.get(), "dimension", H5T_STD_I32LE, H5T_NATIVE_INT, {}, &dimension);
+    Handle text(H5Tcopy(H5T_C_S1), H5Tclose);
+    checked(H5Tset_size(text.get(), 4));
+    checked(H5Tset_strpad(text.get(), H5T_STR_NULLPAD));
+    hdf5::add_attribute(box.get(), "boundary", text.get(), text.get(), {4}, "nonenonenonenone");
+}
+
+void create_bodies(const Handle& file, std::uint64_t bodies) {
+    hdf5::create_group(file.get(), "/particles");
+    const Handle group = hdf5::create_group(file.get(), kBodies);
+    create_box(group.get());
+    for (const StateElement& element : kStateElements) {
+        const Handle parent = hdf5::create_group(group.get(), element.name);
+        const std::uint64_t chunk =
+            std::clamp<std::uint64_t>(bodies, 1, kChunkBytes / (8 * element.width));
+        const Handle value =
+            hdf5::create_growing(parent.get(), "value", H5T_IEEE_F64LE, {0, bodies, element.width},
+                                 {1, chunk, element.width}, true);
+        if (*element.unit) hdf5::add_text_attribute(value.get(), "unit", element.unit);
+    }
+    const Handle position = hdf5::open_group(group.get(), "position");
+    create_column(position.get(), "step", H5T_STD_I64LE, "");
+    create_column(position.get(), "time", H5T_IEEE_F64LE, "s");
+
+    std::vector<std::uint32_t> ids(bodies);
+    std::iota(ids.begin(), ids.end(), 0u);
+    const Handle id =
+        hdf5::create_growing(group.get(), "id", H5T_STD_I64LE, {bodies},
+                             {std::clamp<std::uint64_t>(bodies, 1, kChunkBytes / 8)}, true);
+    if (bodies > 0) hdf5::write_rows(id, 0, bodies, H5T_NATIVE_UINT32, ids.data());
+}
+
+void create_observables(const Handle& file) {
+    const Handle group = hdf5::create_group(file.get(), "/observables");
+    const auto add = [&](const char* name, hid_t type, const char* unit) {
+        const Handle parent = hdf5::create_group(group.get(), name);
+        create_column(parent.get(), "value", type, unit);
+    };
+    add("kinetic_energy", H5T_IEEE_F64LE, "kg m2 s-2");
+    add("potential_energy", H5T_IEEE_F64LE, "kg m2 s-2");
+    add("contacts", H5T_STD_I64LE, "");
+    add("penetration", H5T_IEEE_F64LE, "m");
+}
+
+/// All elements were stored at the same steps: H5MD has them share the datasets.
+void share_steps(const Handle& file) {
+    const std::string from = element_path("position");
+    std::vector<std::string> to;
+    for (std::size_t i = 1; i < kStateElements.size(); ++i)
+        to.push_back(element_path(kStateElements[i].name));
+    for (const char* name : {"kinetic_energy", "potential_energy", "contacts", "penetration"})
+        to.push_back(std::string("/observables/") + name);
+    for (const std::string& element : to)
+        for (const char* name : {"/step", "/time"})
+            hdf5::hard_link(file.get(), from + name, element + name);
+}
+
+void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
+    hdf5::add_attribute(scene.get(), "bodies", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                        &header.bodies);
+    hdf5::add_attribute(scene.get(), "steps_per_second", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {},
+                        &header.steps_per_second);
+    hdf5::add_attribute(scene.get(), "store_every", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                        &header.store_every);
+    const std::pair<const char*, const std::string*> texts[] = {
+        {"name", &header.scene_name},
+        {"text", &header.source},
+        {"effective", &header.effective},
+        {"hash", &header.hash},
+        {"motion_hash", &header.motion_hash}};
+    for (const auto& [name, text] : texts) hdf5::create_text(scene.get(), name, *text);
+}
+
+/// Opens a dataset of 8-byte numbers whose axes after the first are as given.
+Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const Extent& row,
+                    std::uint64_t file_bytes) {
+    const auto require = [&](bool good, const char* what) {
+        if (!good) throw hdf5::Failure(name + ": " + what);
+    };
+    Handle dataset = hdf5::open_dataset(file, name);
+    const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+    require(H5Tget_class(type.get()) == kind && H5Tget_size(type.get()) == 8,
+            kind == H5T_FLOAT ? "is not of 64-bit reals" : "is not of 64-bit integers");
+    // Nothing that reads other files or runs other code, and nothing that asks for memory beyond
+    // what the file can hold.
+    const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+    require(H5Pget_layout(creation.get()) == H5D_CHUNKED, "is not stored in chunks");
+    require(H5Pget_external_count(creation.get()) == 0, "is stored in another file");
+    const int filters = checked(H5Pget_nfilters(creation.get()));
+    for (unsigned i = 0; i < static_cast<unsigned>(filters); ++i) {
+        std::size_t none = 0;
+        const H5Z_filter_t filter =
+            H5Pget_filter2(creation.get(), i, nullptr, &none, nullptr, 0, nullptr, nullptr);
+        require(filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_DEFLATE ||
+                    filter == H5Z_FILTER_FLETCHER32,
+                "uses an unknown filter");
+    }
+    const Extent extent = hdf5::extent_of(dataset);
+    require(extent.size() == row.size() + 1 && std::equal(row.begin(), row.end(), ++extent.begin()),
+            "has another shape");
+    Extent chunk(extent.size());
+    checked(H5Pget_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
+    double chunk_bytes = 8, bytes = 8;
+    for (hsize_t side : chunk) chunk_bytes *= static_cast<double>(side);
+    for (hsize_t side : extent) bytes *= static_cast<double>(side);
+    require(chunk_bytes <= 256.0 * (1 << 20), "has chunks of more than 256 MiB");
+    const double stored = static_cast<double>(
+        std::min<std::uint64_t>(H5Dget_storage_size(dataset.get()), file_bytes));
+    require(bytes <= static_cast<double>(kMostCompression) * stored,
+            "claims to hold more than the file can");
+    return dataset;
+}
+
+}  // namespace
+
+std::array<const Handle*, 10> TrajectoryDatasets::all() const {
+    return {&step,     &time,           &state[0],         &state[1], &state[2],
+            &state[3], &kinetic_energy, &potential_energy, &contacts, &penetration};
+}
+
+std::uint64_t TrajectoryDatasets::whole_rows() const {
+    std::uint64_t rows = std::numeric_limits<std::uint64_t>::max();
+    for (const Handle* dataset : all())
+        rows = std::min<std::uint64_t>(rows, hdf5::extent_of(*dataset)[0]);
+    return rows;
+}
+
+void TrajectoryDatasets::resize(std::uint64_t rows) const {
+    for (const Handle* dataset : all()) hdf5::resize(*dataset, rows);
+}
+
+std::array<double*, 4> state_arrays(Bodies& bodies) {
+    return {reinterpret_cast<double*>(bodies.position.data()),
+            reinterpret_cast<double*>(bodies.rotor.data()),
+            reinterpret_cast<double*>(bodies.velocity.data()),
+            reinterpret_cast<double*>(bodies.angular_velocity.data())};
+}
+
+std::array<const double*, 4> state_arrays(const Bodies& bodies) {
+    return {reinterpret_cast<const double*>(bodies.position.data()),
+            reinterpret_cast<const double*>(bodies.rotor.data()),
+            reinterpret_cast<const double*>(bodies.velocity.data()),
+            reinterpret_cast<const double*>(bodies.angular_velocity.data())};
+}
+
+void create_layout(const Handle& file, const TrajectoryHeader& header) {
+    create_h5md(file, header.program_version);
+    create_bodies(file, header.bodies);
+    create_observables(file);
+    share_steps(file);
+    hdf5::create_group(file.get(), "/parameters");
+    // The group that goes at the end is named first: see trajectory_driver.hpp.
+    hdf5::create_group(file.get(), kResume);
+    fill_scene(hdf5::create_group(file.get(), kScene), header);
+}
+
+void replace_scene(const Handle& file, const TrajectoryHeader& header) {
+    const Handle scene = hdf5::create_unnamed_group(file.get());
+    fill_scene(scene, header);
+    checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+    hdf5::replace_link(file.get(), kScene, scene);
+    checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+}
+
+TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies,
+                                 std::uint64_t file_bytes) {
+    const auto column = [&](const std::string& name, H5T_class_t kind) {
+        return open_numbers(file.get(), name, kind, {}, file_bytes);
+    };
+    TrajectoryDatasets data;
+    data.step = column(element_path("position") + "/step", H5T_INTEGER);
+    data.time = column(element_path("position") + "/time", H5T_FLOAT);
+    for (std::size_t i = 0; i < kStateElements.size(); ++i)
+        data.state[i] = open_numbers(file.get(), element_path(kStateElements[i].name) + "/value",
+                                     H5T_FLOAT, {bodies, kStateElements[i].width}, file_bytes);
+    data.kinetic_energy = column("/observables/kinetic_energy/value", H5T_FLOAT);
+    data.potential_energy = column("/observables/potential_energy/value", H5T_FLOAT);
+    data.contacts = column("/observables/contacts/value", H5T_INTEGER);
+    data.penetration = column("/observables/penetration/value", H5T_FLOAT);
+    return data;
+}
+
+TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
+    TrajectoryHeader header;
+    const Handle scene = hdf5::open_group(file.get(), kScene);
+    header.scene_name = hdf5::read_text(scene.get(), "name", file_bytes);
+    header.source = hdf5::read_text(scene.get(), "text", file_bytes);
+    header.effective = hdf5::read_text(scene.get(), "effective", file_bytes);
+    header.hash = hdf5::read_text(scene.get(), "hash", file_bytes);
+    header.motion_hash = hdf5::read_text(scene.get(), "motion_hash", file_bytes);
+    hdf5::read_attribute(scene.get(), "bodies", H5T_NATIVE_UINT64, &header.bodies);
+    hdf5::read_attribute(scene.get(), "steps_per_second", H5T_NATIVE_DOUBLE,
+                         &header.steps_per_second);
+    hdf5::read_attribute(scene.get(), "store_every", H5T_NATIVE_UINT64, &header.store_every);
+    const Handle creator = hdf5::open_group(file.get(), "/h5md/creator");
+    header.program_version = hdf5::read_text_attribute(creator.get(), "version");
+    return header;
+}
+
+std::uint64_t checked_file_bytes(const std::filesystem::path& path) {
+    std::error_code error;
+    const bool regular = std::filesystem::is_regular_file(path, error);
+    if (error) throw hdf5::SystemFailure(error.message());
+    if (!regular) throw hdf5::Failure("is not a file");
+    const std::uint64_t bytes = std::filesystem::file_size(path, error);
+
+    // HDF5 File Format Specification 3.0, II.A: superblock version 0, at the file's beginning.
+    unsigned char block[96] = {};
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw hdf5::SystemFailure(std::strerror(errno));
+    if (!in.read(reinterpret_cast<char*>(block), sizeof block) && !in.eof())
+        throw hdf5::SystemFailure(std::strerror(errno));
+    if (static_cast<std::size_t>(in.gcount()) < sizeof block ||
+        std::memcmp(block, "\211HDF\r\n\032\n", 8) != 0)
+        throw hdf5::Failure("is not an HDF5 file");
+    const auto word = [&](std::size_t at) {
+        std::uint64_t value;
+        std::memcpy(&value, block + at, 8);
+        return value;
+    };
+    static_assert(std::endian::native == std::endian::little);
+    if (block[8] != 0 || block[13] != 8 || block[14] != 8 || word(24) != 0)
+        throw hdf5::Failure("is not in HDF5's default format");
+    if (word(40) > bytes)
+        throw hdf5::Failure("is cut off: " + std::to_string(bytes) + " of " +
+                            std::to_string(word(40)) + " bytes");
+    return bytes;
+}
+
+void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFacts& facts,
+               const Bodies& bodies) {
+    data.resize(row + 1);
+    hdf5::write_rows(data.step, row, 1, H5T_NATIVE_UINT64, &facts.step);
+    hdf5::write_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
+    hdf5::write_rows(data.kinetic_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.kinetic_energy);
+    hdf5::write_rows(data.potential_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.potential_energy);
+    hdf5::write_rows(data.contacts, row, 1, H5T_NATIVE_UINT64, &facts.report.contacts);
+    hdf5::write_rows(data.penetration, row, 1, H5T_NATIVE_DOUBLE, &facts.report.penetration);
+    const auto arrays = state_arrays(bodies);
+    if (bodies.size() == 0) return;
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        hdf5::write_rows(data.state[i], row, 1, H5T_NATIVE_DOUBLE, arrays[i]);
+}
+
+void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& facts, Bodies& bodies) {
+    hdf5::read_rows(data.step, row, 1, H5T_NATIVE_UINT64, &facts.step);
+    hdf5::read_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
+    hdf5::read_rows(data.kinetic_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.kinetic_energy);
+    hdf5::read_rows(data.potential_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.potential_energy);
+    hdf5::read_rows(data.contacts, row, 1, H5T_NATIVE_UINT64, &facts.report.contacts);
+    hdf5::read_rows(data.penetration, row, 1, H5T_NATIVE_DOUBLE, &facts.report.penetration);
+    const auto arrays = state_arrays(bodies);
+    if (bodies.size() == 0) return;
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+        hdf5::read_rows(data.state[i], row, 1, H5T_NATIVE_DOUBLE, arrays[i]);
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+
+#include "scenes/trajectory/hdf5.hpp"
+#include "scenes/trajectory/trajectory.hpp"
+
+// Where a trajectory's parts lie in its file, for the writer and the reader.
+namespace tesserae::scenes {
+
+/// A property of bodies: an H5MD element of `width` doubles a body.
+struct StateElement {
+    const char* name;
+    const char* unit;
+    std::size_t width;
+};
+inline constexpr std::array<StateElement, 4> kStateElements = {{
+    {"position", "m", 4},
+    {"rotor", "", 8},
+    {"velocity", "m s-1", 4},
+    {"angular_velocity", "rad s-1", 6},
+}};
+
+/// The datasets that grow by a row with every stored step.
+struct TrajectoryDatasets {
+    hdf5::Handle step, time;
+    std::array<hdf5::Handle, 4> state;  ///< in the order of kStateElements
+    hdf5::Handle kinetic_energy, potential_energy, contacts, penetration;
+
+    std::array<const hdf5::Handle*, 10> all() const;
+    /// Rows that every dataset has.
+    std::uint64_t whole_rows() const;
+    /// Drops or adds rows where a dataset has more or fewer.
+    void resize(std::uint64_t rows) const;
+};
+
+/// Where the bodies' states lie in memory, in the order of kStateElements.
+std::array<const double*, 4> state_arrays(const Bodies& bodies);
+std::array<double*, 4> state_arrays(Bodies& bodies);
+
+/// The group of what only continuing needs.
+inline constexpr const char* kResume = "/parameters/resume";
+
+/// Everything but the rows. @throws hdf5::Failure
+void create_layout(const hdf5::Handle& file, const TrajectoryHeader& header);
+/// The scene's texts may change while its motion stays the same. Flushes.
+void replace_scene(const hdf5::Handle& file, const TrajectoryHeader& header);
+
+/// @throws hdf5::Failure   a shape, type, size or filter is not that of a trajectory
+TrajectoryDatasets open_datasets(const hdf5::Handle& file, std::uint64_t bodies,
+                                 std::uint64_t file_bytes);
+TrajectoryHeader read_header(const hdf5::Handle& file, std::uint64_t file_bytes);
+
+/// Length of a file that begins like a whole one of HDF5's default format: signature, version 0,
+/// 64-bit offsets, no longer by its own account than it is. A first sieve before HDF5 sees it.
+/// @throws hdf5::Failure
+std::uint64_t checked_file_bytes(const std::filesystem::path& path);
+
+void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFacts& facts,
+               const Bodies& bodies);
+void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& facts, Bodies& bodies);
+
+}  // namespace tesserae::scenes

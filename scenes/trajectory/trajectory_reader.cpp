@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "scenes/trajectory/trajectory.hpp"
+#include "scenes/trajectory/trajectory_layout.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// How far the square of a stored rotor's length may be from 1: far more than rounding, far less
+/// than shows.
+constexpr double kRotorLength = 1e-6;
+
+}  // namespace
+
+struct TrajectoryReader::File {
+    std::filesystem::path path;
+    TrajectoryHeader header;
+    std::vector<std::uint64_t> steps;
+    std::vector<double> times;
+    hdf5::Handle file;
+    TrajectoryDatasets data;
+
+    void open();
+
+    template <class Work>
+    void reading(Work&& work) const {
+        try {
+            work();
+        } catch (const hdf5::Failure& failure) {
+            throw InputError(
+                fmt::format("{}: not a readable trajectory: {}", path.string(), failure.what()));
+        }
+    }
+};
+
+void TrajectoryReader::File::open() {
+    const std::uint64_t bytes = checked_file_bytes(path);
+    file = hdf5::open_file(path, false);
+    header = read_header(file, bytes);
+    data = open_datasets(file, header.bodies, bytes);
+    const std::uint64_t rows = data.whole_rows();
+    steps.resize(rows);
+    times.resize(rows);
+    if (rows == 0) return;
+    hdf5::read_rows(data.step, 0, rows, H5T_NATIVE_UINT64, steps.data());
+    hdf5::read_rows(data.time, 0, rows, H5T_NATIVE_DOUBLE, times.data());
+    if (std::adjacent_find(steps.begin(), steps.end(), std::greater_equal<>()) != steps.end())
+        throw hdf5::Failure("its steps do not ascend");
+    if (!std::all_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); }))
+        throw hdf5::Failure("a time is not finite");
+}
+
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path)
+    : file_(std::make_unique<File>()) {
+    file_->path = path;
+    file_->reading([&] { file_->open(); });
+}
+
+TrajectoryReader::~TrajectoryReader() = default;
+
+const TrajectoryHeader& TrajectoryReader::header() const { return file_->header; }
+
+std::uint64_t TrajectoryReader::rows() const { return file_->steps.size(); }
+
+const std::vector<std::uint64_t>& TrajectoryReader::steps() const { return file_->steps; }
+
+const std::vector<double>& TrajectoryReader::times() const { return file_->times; }
+
+void TrajectoryReader::read_row(std::uint64_t row, Bodies& bodies) const {
+    TSR_ASSERT(row < rows() && bodies.size() == file_->header.bodies);
+    file_->reading([&] {
+        StepFacts facts;
+        scenes::read_row(file_->data, row, facts, bodies);
+        const auto arrays = state_arrays(std::as_const(bodies));
+        for (std::size_t i = 0; i < arrays.size(); ++i) {
+            const std::size_t width = kStateElements[i].width;
+            const double* end = arrays[i] + bodies.size() * width;
+            const double* bad =
+                std::find_if(arrays[i], end, [](double value) { return !std::isfinite(value); });
+            if (bad != end)
+                throw hdf5::Failure(fmt::format("step {}: {} of body {} is not finite",
+                                                file_->steps[row], kStateElements[i].name,
+                                                static_cast<std::size_t>(bad - arrays[i]) / width));
+        }
+        for (std::size_t id = 0; id < bodies.size(); ++id) {
+            const Rotor& r = bodies.rotor[id];
+            const double square = r.s * r.s + dot(r.b, r.b) + r.p * r.p;
+            if (!(std::abs(square - 1) <= kRotorLength))
+                throw hdf5::Failure(fmt::format("step {}: rotor of body {} is not of length 1",
+                                                file_->steps[row], id));
+        }
+    });
+}
+
+std::vector<StepFacts> TrajectoryReader::facts() const {
+    const File& f = *file_;
+    std::vector<StepFacts> facts(rows());
+    if (facts.empty()) return facts;
+    std::vector<double> reals(facts.size());
+    std::vector<std::uint64_t> counts(facts.size());
+    const auto read = [&](const hdf5::Handle& column, auto& values, hid_t type, auto&& set) {
+        f.reading([&] { hdf5::read_rows(column, 0, values.size(), type, values.data()); });
+        for (std::size_t i = 0; i < facts.size(); ++i) set(facts[i], values[i]);
+    };
+    const hid_t real = H5T_NATIVE_DOUBLE;
+    for (std::size_t i = 0; i < facts.size(); ++i) {
+        facts[i].step = f.steps[i];
+        facts[i].time = f.times[i];
+    }
+    read(f.data.kinetic_energy, reals, real, [](auto& s, double v) { s.kinetic_energy = v; });
+    read(f.data.potential_energy, reals, real, [](auto& s, double v) { s.potential_energy = v; });
+    read(f.data.penetration, reals, real, [](auto& s, double v) { s.report.penetration = v; });
+    read(f.data.contacts, counts, H5T_NATIVE_UINT64,
+         [](auto& s, std::uint64_t v) { s.report.contacts = v; });
+    return facts;
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,336 @@
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "core/error.hpp"
+#include "render/file/partial_file.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/trajectory/resume_record.hpp"
+#include "scenes/trajectory/trajectory.hpp"
+#include "scenes/trajectory/trajectory_layout.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+namespace fs = std::filesystem;
+
+/// Longest wall time between flushes during append(): what a kill costs at most. Usual 2 s.
+constexpr std::chrono::seconds kFlushInterval(2);
+
+/// Two datasets of bytes take turns, so that one always holds the record of the last whole flush.
+constexpr const char* kSlots[2] = {"/parameters/resume/a", "/parameters/resume/b"};
+constexpr hsize_t kSlotChunk = 64 * 1024;
+
+std::optional<ResumeRecord> read_slot(const hdf5::Handle& slot, std::uint64_t file_bytes) {
+    const hdf5::Extent extent = hdf5::extent_of(slot);
+    if (extent.size() != 1 || extent[0] == 0 || extent[0] > file_bytes) return std::nullopt;
+    std::string bytes(extent[0], '\0');
+    hdf5::read_rows(slot, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
+    return to_record(bytes);
+}
+
+Bodies room_for(std::uint64_t bodies) {
+    Bodies room;
+    room.type.resize(bodies);
+    room.position.resize(bodies);
+    room.rotor.resize(bodies);
+    room.velocity.resize(bodies);
+    room.angular_velocity.resize(bodies);
+    return room;
+}
+
+}  // namespace
+
+struct TrajectoryWriter::File {
+    render::PartialFile lock;
+    TrajectoryHeader header;
+    std::vector<std::uint64_t> steps;
+    std::string note;
+
+    hdf5::Handle file;  // closed after what is in it
+    TrajectoryDatasets data;
+    hdf5::Handle slots[2];
+
+    std::uint64_t rows = 0;
+    ResumeRecord record;  ///< of the rows appended since the last flush
+    bool flushed = true;  ///< nothing was appended since the last flush
+    bool failed = false;
+    int next_slot = 0;
+    Clock::time_point last_flush = Clock::now();
+
+    File(const fs::path& path, const TrajectoryHeader& h, std::vector<std::uint64_t> s)
+        : lock(path), header(h), steps(std::move(s)) {}
+
+    bool continue_leftover(bool overwrite);
+    TrajectoryHeader open_leftover();
+    bool take_leftover(bool overwrite);
+    void reopen();
+    std::optional<std::string> other_motion(const TrajectoryHeader& there) const;
+    std::optional<std::string> other_steps(const TrajectoryHeader& there) const;
+    bool is_good(const ResumeRecord& candidate) const;
+    bool find_record(std::uint64_t file_bytes);
+    void start();
+    void flush();
+    void forget();
+
+    /// Runs what writes. @throws RunError   with the path; everything later fails too
+    template <class Work>
+    void writing(Work&& work) {
+        if (failed) throw RunError(lock.path().string() + ": writing failed before");
+        try {
+            work();
+        } catch (const hdf5::Failure& failure) {
+            failed = true;
+            forget();
+            throw RunError(
+                fmt::format("{}: cannot be written: {}", lock.path().string(), failure.what()));
+        }
+    }
+};
+
+/// Why a leftover that is whole goes with other settings; none if it can be continued.
+std::optional<std::string> TrajectoryWriter::File::other_motion(
+    const TrajectoryHeader& there) const {
+    if (there.motion_hash != header.motion_hash)
+        return fmt::format("is of another motion: {}",
+                           first_difference(there.effective, header.effective));
+    if (there.bodies != header.bodies)
+        return fmt::format("has {} bodies, here {}", there.bodies, header.bodies);
+    if (there.steps_per_second != header.steps_per_second)
+        return fmt::format("has {} steps per second, here {}", there.steps_per_second,
+                           header.steps_per_second);
+    const auto stored = [](std::uint64_t every) {
+        return every == 0 ? std::string("the steps that frames need")
+                          : fmt::format("every {}. step", every);
+    };
+    if (there.store_every != header.store_every)
+        return fmt::format("stores {}, here {}", stored(there.store_every),
+                           stored(header.store_every));
+    return std::nullopt;
+}
+
+/// The same by the rows that the leftover has.
+std::optional<std::string> TrajectoryWriter::File::other_steps(
+    const TrajectoryHeader& there) const {
+    std::vector<std::uint64_t> stored(record.rows);
+    hdf5::read_rows(data.step, 0, stored.size(), H5T_NATIVE_UINT64, stored.data());
+    const auto [a, b] = std::mismatch(stored.begin(), stored.end(), steps.begin(), steps.end());
+    // A file that was about to get its name can only be of all the steps.
+    const bool whole = !slots[0];
+    if (a == stored.end() && (b == steps.end() || !whole)) return std::nullopt;
+    const auto here = [&](bool any, std::uint64_t step) {
+        return any ? fmt::format("of step {}", step) : std::string("the end");
+    };
+    const std::string cause = first_difference(there.effective, header.effective);
+    return fmt::format("stores other steps: row {} is {}, here {}{}{}", a - stored.begin(),
+                       here(a != stored.end(), a != stored.end() ? *a : 0),
+                       here(b != steps.end(), b != steps.end() ? *b : 0), cause.empty() ? "" : "; ",
+                       cause);
+}
+
+/// The rows since the flush before are those that the record was made of.
+bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
+    if (candidate.rows > data.whole_rows()) return false;
+    Bodies bodies = room_for(header.bodies);
+    std::array<std::uint64_t, 2> hash = {};
+    StepFacts facts;
+    for (std::uint64_t row = candidate.first; row < candidate.rows; ++row) {
+        read_row(data, row, facts, bodies);
+        hash = hash_with_row(hash, facts, bodies);
+    }
+    return hash == candidate.hash && facts.step == candidate.step;
+}
+
+/// The record of the last whole flush; none: false.
+bool TrajectoryWriter::File::find_record(std::uint64_t file_bytes) {
+    // finish() takes the slots out once every row is flushed: then there is nothing to resume.
+    if (!hdf5::has_link(file.get(), kResume)) {
+        record.rows = data.whole_rows();
+        if (record.rows == 0) return false;
+        hdf5::read_rows(data.step, record.rows - 1, 1, H5T_NATIVE_UINT64, &record.step);
+        return true;
+    }
+    bool found = false;
+    for (int i = 0; i < 2; ++i) {
+        slots[i] = hdf5::open_dataset(file.get(), kSlots[i]);
+        const auto candidate = read_slot(slots[i], file_bytes);
+        if (!candidate || (found && candidate->rows <= record.rows)) continue;
+        try {
+            if (!is_good(*candidate)) continue;
+        } catch (const hdf5::SystemFailure&) {
+            throw;
+        } catch (const hdf5::Failure&) {
+            continue;
+        }
+        record = *candidate;
+        next_slot = 1 - i;
+        found = true;
+    }
+    return found;
+}
+
+/// @throws hdf5::Failure
+TrajectoryHeader TrajectoryWriter::File::open_leftover() {
+    const std::uint64_t file_bytes = checked_file_bytes(lock.partial());
+    file = hdf5::open_file(lock.partial(), true);
+    TrajectoryHeader there = read_header(file, file_bytes);
+    if (other_motion(there)) return there;
+    data = open_datasets(file, header.bodies, file_bytes);
+    if (!find_record(file_bytes)) throw hdf5::Failure("holds no row that can be continued from");
+    rows = record.rows;
+    return there;
+}
+
+/// Makes the leftover one of `rows` rows and of this scene, or refuses it.
+bool TrajectoryWriter::File::take_leftover(bool overwrite) {
+    const TrajectoryHeader there = open_leftover();
+    auto other = other_motion(there);
+    if (!other) other = other_steps(there);
+    if (other && overwrite) throw hdf5::Failure(*other);
+    if (other)
+        throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
+                                     lock.partial().string(), *other));
+    // One that was about to get its name is left as it is.
+    if (!slots[0]) return true;
+    const auto all = data.all();
+    const bool longer = std::any_of(all.begin(), all.end(), [&](const hdf5::Handle* dataset) {
+        return hdf5::extent_of(*dataset)[0] != rows;
+    });
+    const bool other_texts = there.source != header.source || there.effective != header.effective ||
+                             there.hash != header.hash || there.scene_name != header.scene_name;
+    if (!longer && !other_texts) return true;
+    // The datasets are shortened first, and in a flush of their own: what they free lies where the
+    // file on disk still has something.
+    data.resize(rows);
+    reopen();
+    if (other_texts) {
+        replace_scene(file, header);
+        reopen();
+    }
+    return true;
+}
+
+/// Forgets, as HDF5 does with a file, which places in it are free.
+void TrajectoryWriter::File::reopen() {
+    data = {};
+    for (hdf5::Handle& slot : slots) slot = {};
+    file.close();
+    open_leftover();
+}
+
+bool TrajectoryWriter::File::continue_leftover(bool overwrite) try {
+    return fs::file_size(lock.partial()) > 0 && take_leftover(overwrite);
+} catch (const hdf5::SystemFailure& failure) {
+    forget();
+    throw RunError(fmt::format("{}: cannot be continued: {}; remove it to start anew",
+                               lock.partial().string(), failure.what()));
+} catch (const hdf5::Failure& failure) {
+    note = fmt::format("{}: {}; starting anew", lock.partial().string(), failure.what());
+    forget();
+    return false;
+}
+
+void TrajectoryWriter::File::start() {
+    file = hdf5::create_file(lock.partial());
+    create_layout(file, header);
+    for (int i = 0; i < 2; ++i)
+        slots[i] =
+            hdf5::create_growing(file.get(), kSlots[i], H5T_STD_U8LE, {0}, {kSlotChunk}, false);
+    hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+    data = open_datasets(file, header.bodies, fs::file_size(lock.partial()));
+    rows = 0;
+    record = {};
+    next_slot = 0;
+}
+
+/// Everything to the system: the record first, so that it is never older than the rows it is of.
+void TrajectoryWriter::File::flush() {
+    if (flushed) return;
+    record.rows = rows;
+    const std::string bytes = to_bytes(record);
+    const hdf5::Handle& slot = slots[next_slot];
+    // A slot never shrinks: a record says itself how long it is.
+    if (hdf5::extent_of(slot)[0] < bytes.size()) hdf5::resize(slot, bytes.size());
+    hdf5::write_rows(slot, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
+    hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+    next_slot = 1 - next_slot;
+    record.first = rows;
+    record.hash = {};
+    flushed = true;
+    last_flush = Clock::now();
+}
+
+/// Closes whatever is open, without a word.
+void TrajectoryWriter::File::forget() {
+    data = {};
+    for (hdf5::Handle& slot : slots) slot = {};
+    file = {};
+}
+
+TrajectoryWriter::TrajectoryWriter(const fs::path& path, const TrajectoryHeader& header,
+                                   std::vector<std::uint64_t> steps, bool overwrite)
+    : file_(std::make_unique<File>(path, header, std::move(steps))) {
+    if (!file_->continue_leftover(overwrite)) file_->writing([&] { file_->start(); });
+    file_->record.first = file_->rows;
+    file_->record.hash = {};
+    file_->lock.admit_readers();
+}
+
+TrajectoryWriter::~TrajectoryWriter() {
+    if (!file_->file || file_->failed) return;
+    try {
+        flush();
+    } catch (const std::exception&) {
+        // The flush before still stands.
+    }
+}
+
+const std::string& TrajectoryWriter::note() const { return file_->note; }
+
+std::uint64_t TrajectoryWriter::rows() const { return file_->rows; }
+
+std::optional<TrajectoryWriter::Resume> TrajectoryWriter::resume(Bodies& bodies) const {
+    if (file_->rows == 0) return std::nullopt;
+    TSR_ASSERT(bodies.size() == file_->header.bodies);
+    file_->writing([&] {
+        StepFacts facts;
+        read_row(file_->data, file_->rows - 1, facts, bodies);
+    });
+    return Resume{file_->record.step, file_->record.memory};
+}
+
+void TrajectoryWriter::append(const StepFacts& facts, const Bodies& bodies,
+                              const StepMemory& memory) {
+    File& f = *file_;
+    TSR_ASSERT(bodies.size() == f.header.bodies);
+    TSR_ASSERT(f.rows < f.steps.size() && facts.step == f.steps[f.rows]);
+    f.writing([&] {
+        f.flushed = false;
+        write_row(f.data, f.rows, facts, bodies);
+        ++f.rows;
+        f.record.hash = hash_with_row(f.record.hash, facts, bodies);
+        f.record.step = facts.step;
+        f.record.memory = memory;
+        if (f.rows == 1 || Clock::now() - f.last_flush >= kFlushInterval) f.flush();
+    });
+}
+
+void TrajectoryWriter::flush() {
+    file_->writing([&] { file_->flush(); });
+}
+
+void TrajectoryWriter::finish() {
+    File& f = *file_;
+    TSR_ASSERT(f.rows == f.steps.size());
+    f.writing([&] {
+        f.flush();
+        for (hdf5::Handle& slot : f.slots) slot = {};
+        if (hdf5::has_link(f.file.get(), kResume)) hdf5::remove_link(f.file.get(), kResume);
+        f.data = {};
+        f.file.close();
+    });
+    f.lock.publish();
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,228 @@
+#include "render/file/file_writer.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "core/error.hpp"
+
+namespace tesserae::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FileWriterTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::string name = (fs::temp_directory_path() / "file_writer_XXXXXX").string();
+        ASSERT_NE(::mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path folder_;
+};
+
+std::string content_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+/// The error that a call throws, empty if none.
+std::string error_of(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const RunError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// Exit status of a child process that runs `work`, negative the signal that ended it.
+int status_of_child(const std::function<int()>& work) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(work());
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+/// From here on this process cannot make files longer than this, as on a full disk.
+void limit_file_size(rlim_t bytes) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit = {bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+}
+
+TEST_F(FileWriterTest, WritesWhatAStringInMemoryHolds) {
+    // Writes of all sizes and seeks to random places, beside the same on a string.
+    std::mt19937_64 random(1);
+    for (int round = 0; round < 40; ++round) {
+        const fs::path path = folder_ / "random";
+        std::string expected;
+        std::size_t position = 0;
+        FileWriter writer(path);
+        for (int i = 0; i < 100; ++i) {
+            if (random() % 4 == 0) {
+                position = random() % (expected.size() + 1000);
+                writer.seek(position);
+            }
+            std::string bytes(random() % (std::size_t{1} << random() % 18), '\0');
+            for (char& c : bytes) c = static_cast<char>(random());
+            if (bytes.empty()) bytes = "x";
+            if (expected.size() < position + bytes.size()) expected.resize(position + bytes.size());
+            expected.replace(position, bytes.size(), bytes);
+            writer.write(bytes.data(), bytes.size());
+            position += bytes.size();
+            ASSERT_EQ(writer.position(), position);
+        }
+        ASSERT_FALSE(fs::exists(path) && round == 0);
+        writer.finish();
+        ASSERT_EQ(content_of(path), expected) << "round " << round;
+        ASSERT_FALSE(fs::exists(path.string() + ".partial"));
+    }
+}
+
+TEST_F(FileWriterTest, ReplacesAFileOnlyWhenFinished) {
+    const fs::path path = folder_ / "file";
+    write_file(path, "old");
+    {
+        FileWriter writer(path);
+        writer.write("newer", 5);
+        EXPECT_EQ(content_of(path), "old");
+    }
+    EXPECT_EQ(content_of(path), "old");
+    EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
+    write_file(path, "newer");
+    EXPECT_EQ(content_of(path), "newer");
+}
+
+TEST_F(FileWriterTest, RefusesASecondWriter) {
+    const fs::path path = folder_ / "file";
+    FileWriter writer(path);
+    writer.write("first", 5);
+    const int status = status_of_child([&] {
+        const std::string error = error_of([&] { FileWriter second(path); });
+        return error == path.string() + ": is being written by another process" ? 7 : 1;
+    });
+    EXPECT_EQ(status, 7);
+    writer.finish();
+    EXPECT_EQ(content_of(path), "first");
+}
+
+TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {
+    const fs::path path = folder_ / "file";
+    const int status = status_of_child([&] {
+        FileWriter writer(path);
+        const std::string bytes(200'000, 'x');
+        writer.write(bytes.data(), bytes.size());
+        return ::raise(SIGKILL);
+    });
+    ASSERT_EQ(status, -SIGKILL);
+    ASSERT_EQ(fs::file_size(folder_ / "file.partial"), 200'000u);
+    ASSERT_FALSE(fs::exists(path));
+    write_file(path, "whole");
+    EXPECT_EQ(content_of(path), "whole");
+}
+
+TEST_F(FileWriterTest, AFullDiskLeavesNothing) {
+    // The limit is met by a large write, by a flush of small ones, and by finish() only.
+    for (const std::size_t piece : {1'000'000, 1000, 1}) {
+        const fs::path path = folder_ / "file";
+        const int status = status_of_child([&] {
+            limit_file_size(piece == 1 ? 50 : 150'000);
+            FileWriter writer(path);
+            const std::string bytes(piece, 'x');
+            const auto write = [&] {
+                for (int i = 0; i < 1000; ++i) writer.write(bytes.data(), bytes.size());
+            };
+            const std::string first = error_of(write);
+            const std::string last = error_of([&] { writer.finish(); });
+            const bool named =
+                last.find(path.string()) == 0 && last.find("File too large") != std::string::npos;
+            // Buffered bytes fail in finish(); others at once, and finish() repeats it.
+            return named && first == (piece == 1 ? "" : last) ? 7 : 1;
+        });
+        EXPECT_EQ(status, 7) << "pieces of " << piece;
+        EXPECT_FALSE(fs::exists(path));
+        EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
+    }
+}
+
+TEST_F(FileWriterTest, NamesThePathAndTheReason) {
+    // No permission bits: root ignores them. Each of these fails for everyone.
+    write_file(folder_ / "plain", "x");
+    fs::create_directory(folder_ / "taken");
+    fs::create_directory(folder_ / "half.partial");
+    fs::create_symlink("/dev/null", folder_ / "link.partial");
+    const std::string long_name(300, 'n');
+    const std::pair<fs::path, const char*> cases[] = {
+        {folder_ / "missing" / "file", "No such file or directory"},
+        {folder_ / "plain" / "file", "Not a directory"},
+        {folder_ / "taken", "Is a directory"},
+        {folder_ / "half", "Is a directory"},
+        {folder_ / "link", "Too many levels of symbolic links"},
+        {folder_ / long_name, "File name too long"},
+        {"/proc/file", "No such file or directory"},
+    };
+    for (const auto& [path, reason] : cases) {
+        const std::string error = error_of([&, p = path] { write_file(p, "content"); });
+        EXPECT_EQ(error.find(path.string() + ": "), 0u) << error;
+        EXPECT_NE(error.find(reason), std::string::npos) << error;
+    }
+    EXPECT_EQ(content_of(folder_ / "plain"), "x");
+}
+
+TEST_F(FileWriterTest, AFailedRenameLeavesNothing) {
+    const fs::path path = folder_ / "file";
+    std::string error;
+    {
+        FileWriter writer(path);
+        writer.write("x", 1);
+        fs::create_directory(path);
+        error = error_of([&] { writer.finish(); });
+        EXPECT_EQ(error_of([&] { writer.finish(); }), error);
+    }
+    EXPECT_NE(error.find("cannot be renamed"), std::string::npos) << error;
+    EXPECT_TRUE(fs::is_directory(path));
+    EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
+}
+
+TEST_F(FileWriterTest, ManyWritersOfOneFileLeaveOneWholeFile) {
+    // Races between locking and renaming: whoever gets the lock writes all of its own letter.
+    const fs::path path = folder_ / "file";
+    for (int child = 0; child < 4; ++child)
+        if (::fork() == 0) {
+            const std::string bytes(100'000, static_cast<char>('a' + child));
+            for (int written = 0; written < 20;) {
+                const std::string error = error_of([&] { write_file(path, bytes); });
+                written += error.empty();
+                if (!error.empty() && error.find("by another process") == std::string::npos)
+                    ::_exit(1);
+            }
+            ::_exit(7);
+        }
+    for (int child = 0; child < 4; ++child) {
+        int status = 0;
+        ::wait(&status);
+        EXPECT_EQ(WEXITSTATUS(status), 7);
+    }
+    const std::string content = content_of(path);
+    ASSERT_EQ(content.size(), 100'000u);
+    EXPECT_EQ(content.find_first_not_of(content[0]), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
+}
+
+}  // namespace
+}  // namespace tesserae::render

@@ -1,0 +1,128 @@
+#include "tests/scenes/program/program.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace tesserae::scenes::testing {
+
+namespace fs = std::filesystem;
+
+Outcome tesserae(const std::vector<std::string>& arguments, int signal, int milliseconds) {
+    const Folder folder(fmt::format("program-{}", static_cast<const void*>(&arguments)));
+    const std::string out = folder.file("out"), err = folder.file("err");
+    const pid_t child = fork();
+    if (child == 0) {
+        const auto redirect = [](const std::string& file, int to) {
+            dup2(open(file.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600), to);
+        };
+        redirect(out, STDOUT_FILENO);
+        redirect(err, STDERR_FILENO);
+        std::vector<std::string> words = arguments;
+        words.insert(words.begin(), TESSERAE_PROGRAM);
+        std::vector<char*> argv;
+        for (std::string& word : words) argv.push_back(word.data());
+        argv.push_back(nullptr);
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    if (signal != 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+        kill(child, signal);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    Outcome outcome;
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    outcome.out = content(out);
+    outcome.err = content(err);
+    return outcome;
+}
+
+Folder::Folder(const std::string& name)
+    : path_(fs::temp_directory_path() / fmt::format("tesserae-test-{}-{}", getpid(), name)) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+}
+
+Folder::~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+
+std::string Folder::write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return file(name);
+}
+
+std::string content(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+std::vector<std::string> files_below(const fs::path& folder) {
+    std::vector<std::string> files;
+    if (fs::exists(folder))
+        for (const auto& entry : fs::recursive_directory_iterator(folder))
+            if (entry.is_regular_file())
+                files.push_back(fs::relative(entry.path(), folder).string());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::string small_scene(double duration) {
+    return fmt::format(R"(
+[physics]
+duration = {}
+steps_per_second = 60
+[camera]
+position = [0, 2, -6, 0]
+look_at = [0, 0.5, 0, 0]
+[render]
+size = [64, 48]
+samples = 2
+frames_per_second = 20
+tile = 16
+[[light]]
+type = "sun"
+direction = [0.4, -1, 0.5, 0.2]
+strength = 3
+[[light]]
+type = "sky"
+strength = 0.4
+[[body]]
+name = "floor"
+shape = "hyperplane"
+normal = [0, 1, 0, 0]
+offset = 0
+[[body]]
+name = "ball"
+shape = "hypersphere"
+radius = 0.5
+position = [0.1, 3, 0, 0.1]
+velocity = [0, -1, 0, 0]
+angular_velocity = {{ xw = 3 }}
+restitution = 0.6
+[[lattice]]
+name = "rain"
+shape = "hypersphere"
+radius = 0.25
+count = [3, 3, 3, 1]
+spacing = [0.6, 0.6, 0.6, 0.6]
+jitter = 0.05
+position = [0, 1.2, 0, 0]
+)",
+                       duration);
+}
+
+}  // namespace tesserae::scenes::testing

@@ -1,0 +1,53 @@
+// The READMEs' links lead where they say: files exist, and a function named in a link is in the
+// file.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/scenes/program/program.hpp"
+
+namespace tesserae::scenes::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = TESSERAE_SOURCE_DIR;
+
+TEST(Readme, LinksLeadToFilesThatHoldWhatTheyName) {
+    const std::regex link(R"(\[([^\]]*)\]\(([^)#]+)\))");
+    const std::regex name(R"(`(?:\w+::)?(\w+)`)");
+    int links = 0, names = 0;
+    for (const char* room : {"", "core", "parallel", "render", "scenes", "bench"}) {
+        const fs::path readme = kSource / room / "README.md";
+        ASSERT_TRUE(fs::exists(readme)) << readme;
+        const std::string text = content(readme);
+        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+            const std::string label = (*at)[1], target = (*at)[2];
+            if (target.starts_with("http")) continue;
+            ++links;
+            const fs::path file = readme.parent_path() / target;
+            ASSERT_TRUE(fs::exists(file)) << readme << " links to " << target;
+            for (std::sregex_iterator n(label.begin(), label.end(), name); n != end; ++n) {
+                ++names;
+                EXPECT_NE(content(file).find((*n)[1]), std::string::npos)
+                    << readme << ": " << target << " has no " << (*n)[1];
+            }
+        }
+    }
+    EXPECT_GT(links, 30);
+    EXPECT_GT(names, 15);
+}
+
+TEST(Readme, ItsSceneRuns) {
+    const std::string text = content(kSource / "README.md");
+    const std::size_t begin = text.find("```toml\n") + 8, end = text.find("```", begin);
+    ASSERT_LT(end, text.size());
+    const Folder folder("readme");
+    const auto scene = folder.write("readme.toml", text.substr(begin, end - begin));
+    const Outcome run = tesserae({"run", scene, "-o", folder.file("out"), "--size", "64x36",
+                                  "--samples", "1", "--frames", "0,89"});
+    EXPECT_EQ(run.status, 0) << run.err;
+}
+
+}  // namespace
+}  // namespace tesserae::scenes::testing

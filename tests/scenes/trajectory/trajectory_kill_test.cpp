@@ -1,0 +1,173 @@
+// What a SIGKILL leaves, at every place where it can fall: a writer runs under ptrace and is
+// stopped before each of its writes, where the file is just what a kill at that moment would leave.
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
+#include <sys/user.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <functional>
+
+#include "core/error.hpp"
+#include "tests/scenes/trajectory/trajectory_rows.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBodies = 5;
+/// A tree node of HDF5's default format has 64 entries: rows 65 and 122 split one.
+constexpr std::uint64_t kRows = 128;
+
+struct Folder {
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "trajectory_XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder " + name);
+        path = name;
+    }
+    ~Folder() { fs::remove_all(path); }
+    fs::path path;
+};
+
+/// Runs `work` in a child, stopped before every system call that changes a file.
+/// @return its exit status, -1 if it cannot be traced
+int trace_writes(const std::function<void()>& work, const std::function<void()>& before_write) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) ::_exit(99);
+        ::raise(SIGSTOP);
+        work();
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    if (!WIFSTOPPED(status)) return -1;
+    ::ptrace(PTRACE_SETOPTIONS, child, nullptr, PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL);
+    for (bool entering = true;;) {
+        ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr);
+        ::waitpid(child, &status, 0);
+        if (WIFEXITED(status)) return WEXITSTATUS(status);
+        if (WIFSIGNALED(status)) return -WTERMSIG(status);
+        if (!WIFSTOPPED(status) || WSTOPSIG(status) != (SIGTRAP | 0x80)) continue;
+        __ptrace_syscall_info info = {};
+        ::ptrace(PTRACE_GET_SYSCALL_INFO, child, sizeof info, &info);
+        const auto call = info.entry.nr;
+        if (entering && (call == SYS_pwrite64 || call == SYS_ftruncate || call == SYS_rename))
+            before_write();
+        entering = !entering;
+    }
+}
+
+/// Rows that the child has flushed, where both processes see it.
+class SharedCount {
+  public:
+    SharedCount()
+        : count_(static_cast<volatile std::uint64_t*>(::mmap(nullptr, sizeof(std::uint64_t),
+                                                             PROT_READ | PROT_WRITE,
+                                                             MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
+    ~SharedCount() { ::munmap(const_cast<std::uint64_t*>(count_), sizeof(std::uint64_t)); }
+    void set(std::uint64_t rows) { *count_ = rows; }
+    std::uint64_t get() const { return *count_; }
+
+  private:
+    volatile std::uint64_t* count_;
+};
+
+/// Every row that counts is right, and none of those flushed is missing.
+void expect_whole(const fs::path& file, std::uint64_t flushed) {
+    const TrajectoryReader reader(file);
+    ASSERT_GE(reader.rows(), flushed);
+    EXPECT_EQ(reader.facts().size(), reader.rows());
+    Bodies bodies = make_row(0, kBodies).bodies;
+    // The last rows, which are beside what changes, and some of all the others.
+    for (std::uint64_t row = 0; row < reader.rows(); ++row) {
+        if (row + 8 < reader.rows() && row % 32 != 0) continue;
+        ASSERT_EQ(reader.steps()[row], 3 * row);
+        reader.read_row(row, bodies);
+        const Row made = make_row(row, kBodies);
+        ASSERT_EQ(bodies.position, made.bodies.position) << "row " << row;
+        ASSERT_EQ(bodies.rotor, made.bodies.rotor) << "row " << row;
+        ASSERT_EQ(bodies.velocity, made.bodies.velocity) << "row " << row;
+    }
+}
+
+/// A copy is continued from its last flush on.
+void expect_continued(const fs::path& file, std::uint64_t flushed) {
+    const Folder folder;
+    const fs::path path = folder.path / "copy.h5";
+    fs::copy_file(file, path.string() + ".partial");
+    const TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
+    ASSERT_GE(writer.rows(), flushed) << writer.note();
+    Bodies bodies = make_row(0, kBodies).bodies;
+    ASSERT_TRUE(writer.resume(bodies).has_value());
+    EXPECT_EQ(bodies.rotor, make_row(writer.rows() - 1, kBodies).bodies.rotor);
+}
+
+/// Traces `work`, which writes below `path` and counts what it has flushed, and checks every state.
+void expect_whole_at_every_write(const fs::path& path, const SharedCount& flushed,
+                                 const std::function<void()>& work) {
+    const fs::path partial = path.string() + ".partial";
+    int states = 0;
+    const auto check = [&] {
+        const std::uint64_t rows = flushed.get();
+        if (rows == 0 || !fs::exists(partial) || testing::Test::HasFailure()) return;
+        ++states;
+        try {
+            expect_whole(partial, rows);
+            if (states % 8 == 0) expect_continued(partial, rows);
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << error.what();
+        }
+        if (testing::Test::HasFailure())
+            std::cout << "at write " << states << " after " << rows << " flushed rows\n";
+    };
+    const int status = trace_writes(work, check);
+    if (status == -1) GTEST_SKIP() << "processes cannot be traced here";
+    EXPECT_EQ(status, 0);
+    EXPECT_GE(states, 300);
+    expect_whole(path, kRows);
+}
+
+TEST(TrajectoryKill, AtEveryWriteTheFileHoldsTheLastFlush) {
+    const Folder folder;
+    const fs::path path = folder.path / "film.h5";
+    SharedCount flushed;
+    expect_whole_at_every_write(path, flushed, [&] {
+        TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
+        for (std::uint64_t row = 1; row <= kRows; ++row) {
+            append_rows(writer, row, kBodies);
+            const bool splits = (row > 62 && row < 68) || row > 119;
+            if (!splits && row % 20 != 1) continue;
+            writer.flush();
+            flushed.set(row);
+        }
+        writer.finish();
+    });
+}
+
+TEST(TrajectoryKill, AtEveryWriteOfAnInterruptedRunTheFileHoldsTheLastFlush) {
+    // Each run has another text, and rows that were not flushed are cut off again.
+    const Folder folder;
+    const fs::path path = folder.path / "film.h5";
+    SharedCount flushed;
+    expect_whole_at_every_write(path, flushed, [&] {
+        for (std::uint64_t end = 14; flushed.get() < kRows; end += 19) {
+            TrajectoryHeader header = make_header(kBodies);
+            header.source = "run " + std::string(end, 'x');
+            header.hash = std::to_string(end);
+            TrajectoryWriter writer(path, header, make_steps(kRows), false);
+            append_rows(writer, std::min(end, kRows), kBodies);
+            writer.flush();
+            flushed.set(writer.rows());
+            if (writer.rows() == kRows) writer.finish();
+        }
+    });
+}
+
+}  // namespace
+}  // namespace tesserae::scenes

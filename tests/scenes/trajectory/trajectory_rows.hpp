@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include "scenes/trajectory/trajectory.hpp"
+
+namespace tesserae::scenes {
+
+/// Made-up rows, a pure function of their number: what a trajectory's tests store.
+struct Row {
+    StepFacts facts;
+    Bodies bodies;
+    StepMemory memory;
+};
+
+inline Row make_row(std::uint64_t row, std::size_t bodies) {
+    std::mt19937_64 random(row + 1);
+    std::normal_distribution<double> normal;
+    Row made;
+    made.facts = {3 * row,
+                  0.0125 * static_cast<double>(row),
+                  {random() % 100, normal(random)},
+                  normal(random),
+                  normal(random)};
+    Bodies& b = made.bodies;
+    b.type.assign(bodies, 0);
+    for (std::size_t i = 0; i < bodies; ++i) {
+        b.position.push_back({normal(random), normal(random), normal(random), normal(random)});
+        b.velocity.push_back({normal(random), normal(random), -0.0, 5e-324});
+        b.angular_velocity.push_back(
+            {normal(random), normal(random), normal(random), 0, 1, normal(random)});
+        const double angle = normal(random);
+        b.rotor.push_back({std::cos(angle), {0, 0, std::sin(angle), 0, 0, 0}, 0});
+    }
+    made.memory.time = made.facts.time;
+    for (std::uint64_t i = 0; i < random() % 50; ++i)
+        made.memory.impulses.push_back({1,
+                                        2,
+                                        static_cast<std::uint32_t>(i),
+                                        normal(random),
+                                        {normal(random), normal(random), 0, 1}});
+    return made;
+}
+
+inline TrajectoryHeader make_header(std::size_t bodies) {
+    return {"test", "# t\xc3\xa9xt\n", "effective", "0123", "4567", "0.1.0", bodies, 240, 3};
+}
+
+inline std::vector<std::uint64_t> make_steps(std::uint64_t rows) {
+    std::vector<std::uint64_t> steps;
+    for (std::uint64_t row = 0; row < rows; ++row) steps.push_back(3 * row);
+    return steps;
+}
+
+/// Appends what is missing, up to a row; the caller finishes or not.
+inline void append_rows(TrajectoryWriter& writer, std::uint64_t end, std::size_t bodies) {
+    for (std::uint64_t i = writer.rows(); i < end; ++i) {
+        const Row row = make_row(i, bodies);
+        writer.append(row.facts, row.bodies, row.memory);
+    }
+}
+
+}  // namespace tesserae::scenes
