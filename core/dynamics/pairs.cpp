@@ -44,8 +44,11 @@ void find_contacts(const Simulation& simulation, const StepData& step, Range pai
     const Bodies& bodies = simulation.bodies;
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const auto [a, b] = step.pairs[i];
-        const double slop = std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
-        const double margin = slop + step.dt * (step.velocity[b] - step.velocity[a]).norm();
+        const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+        double speed = (step.velocity[b] - step.velocity[a]).norm();
+        if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
+        if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
+        const double margin = std::min(type_a.slop, type_b.slop) + step.dt * speed;
         find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
                       bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
     }

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/dynamics/supported.hpp"
 
 namespace tesserae {
 
@@ -26,7 +25,6 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
     for (std::uint32_t type : bodies.type)
         if (type >= bodies.types.size())
             throw InputError(fmt::format("bodies: type {} of {}", type, bodies.types.size()));
-    if (const auto reason = unsupported_contacts(bodies)) throw InputError(*reason);
 
     Simulation simulation;
     simulation.types = type_properties(bodies);

@@ -26,10 +26,11 @@ TypeProperties properties_of(const BodyType& type) {
         [&](const auto& shape) { return plane_inertias(second_moments(shape, type.mass)); },
         type.shape);
     p.radius = std::visit([](const auto& shape) { return bounding_radius(shape); }, type.shape);
-    p.slop = kSlop *
-             std::visit(
-                 [](const auto& shape) { return half_extents(shape, Mat4::Identity()).minCoeff(); },
-                 type.shape);
+    const double least_half_size = std::visit(
+        [](const auto& shape) { return half_extents(shape, Mat4::Identity()).minCoeff(); },
+        type.shape);
+    p.slop = kSlop * least_half_size;
+    p.arm = least_half_size < p.radius ? p.radius : 0;
 
     p.movable = !(type.fixed_position && type.fixed_rotation);
     p.falls = !type.fixed_position;

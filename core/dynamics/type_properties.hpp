@@ -17,6 +17,8 @@ struct TypeProperties {
     bool movable = false;  ///< contacts can change its motion
     bool falls = false;    ///< gravity acts on it
     double radius = 0;     ///< of the bounding sphere about the centre [m]
+    double arm = 0;        ///< surface speed towards another body per angular speed, at most [m];
+                           ///< 0 for a hypersphere, whose turning moves no surface
     double slop = 0;       ///< allowed overlap [m]; infinite if unbounded
     double friction = 0;
     double restitution = 0;

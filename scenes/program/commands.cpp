@@ -5,7 +5,6 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "core/dynamics/supported.hpp"
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
 #include "render/file/file_writer.hpp"
@@ -70,11 +69,7 @@ void print_plan(const Plan& plan) {
 /// What commands on a scene share: the checked scene, its plan, and the threads to work on.
 struct Work {
     explicit Work(const CommandLine& line)
-        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {
-        if (!plan.moves) return;
-        if (const auto reason = unsupported_contacts(scene.bodies))
-            throw InputError(fmt::format("{}: {}", line.file.string(), *reason));
-    }
+        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {}
 
     Scene scene;
     Plan plan;

@@ -103,8 +103,8 @@ TEST(ParallelWorld, NamesTheLowestBodyThatLeftTheFiniteRange) {
 
 TEST(ParallelWorld, RefusesWhatTheSerialWorldRefuses) {
     Bodies bodies;
-    add(bodies, box_type({1, 1, 1, 1}));
-    add(bodies, plane_type(Vec4::UnitY(), 0));
+    add(bodies, sphere_type(1));
+    bodies.velocity.clear();
     EXPECT_THROW(ParallelWorld(bodies, PhysicsSettings{}), InputError);
     Threads threads(2);
     ParallelWorld empty(Bodies{}, PhysicsSettings{});

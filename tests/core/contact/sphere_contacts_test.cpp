@@ -111,16 +111,5 @@ TEST(SpherePlaneContacts, AreThoseThatTheSphereWasBuiltFrom) {
     }
 }
 
-TEST(SupportedPairs, AreSpheresWithSpheresAndPlanesInEitherOrder) {
-    const Shape all[] = {sphere(1), Hypercapsule{}, Hyperbox{}, plane(Vec4::UnitY(), 0)};
-    for (const Shape& a : all)
-        for (const Shape& b : all) {
-            EXPECT_EQ(is_supported(a, b), is_supported(b, a));
-            const bool spheres = a.index() == 0 && b.index() == 0;
-            const bool with_plane = a.index() + b.index() == 3 && a.index() * b.index() == 0;
-            EXPECT_EQ(is_supported(a, b), spheres || with_plane) << name_of(a) << " " << name_of(b);
-        }
-}
-
 }  // namespace
 }  // namespace tesserae

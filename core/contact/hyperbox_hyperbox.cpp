@@ -1,0 +1,108 @@
+#include "core/contact/hyperbox_hyperbox.hpp"
+
+#include "core/contact/box_distance.hpp"
+#include "core/contact/cell_clipping.hpp"
+#include "core/contact/edge_points.hpp"
+#include "core/contact/manifold.hpp"
+
+namespace tesserae {
+namespace {
+
+constexpr std::uint32_t kFaces = 81;
+
+/// The vertices under one cell; false if they do not reach the pair's separation, so that another
+/// feature touches first.
+bool meet_at_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double separation,
+                  double margin, BoxPoints& points) {
+    if (axis.gap < separation - cell_bias(pair)) return false;
+    if (of_b) {
+        const BoxPair other = swapped(pair);
+        clip_cell(other, axis, margin, points);
+        points.swap_boxes(other);
+    } else {
+        clip_cell(pair, axis, margin, points);
+    }
+    return points.least_separation() <= separation + cell_bias(pair);
+}
+
+void meet_at_edges(const BoxPair& pair, const EdgeAxis& axis, BoxPoints& points) {
+    if (!axis.face_of_b) return meet_at_edge(pair, axis, cell_bias(pair), points);
+    const BoxPair other = swapped(pair);
+    EdgeAxis seen = axis;
+    seen.face_of_b = false;
+    meet_at_edge(other, seen, cell_bias(pair), points);
+    points.swap_boxes(other);
+}
+
+/// b's vertex farthest against the normal: what is left where rounding empties the solid under the
+/// best cell.
+void meet_at_vertex(const BoxPair& pair, const SeparatingAxes& axes, BoxPoints& points) {
+    points.normal = best_normal(pair, axes);
+    const Vec4 slope = pair.rotation.transpose() * points.normal;
+    BoxPoint vertex{pair.offset, axes.gap(), {}, {}};
+    for (int j = 0; j < 4; ++j) {
+        vertex.face_b[j] = static_cast<signed char>(-side_of(slope[j]));
+        vertex.on_b += (vertex.face_b[j] * pair.half_b[j]) * pair.rotation.col(j);
+    }
+    points.count = 0;
+    points.add_distinct(vertex);
+}
+
+void find_points(const BoxPair& pair, const SeparatingAxes& axes, const BoxSeparation& separation,
+                 double margin, BoxPoints& points) {
+    // A cell of a goes first when it is nearly as good, so that rounding does not choose.
+    const double value = separation.value;
+    const bool b_first = axes.cell_b.gap > axes.cell_a.gap + cell_bias(pair);
+    for (const bool of_b : {b_first, !b_first})
+        if (meet_at_cell(pair, of_b ? axes.cell_b : axes.cell_a, of_b, value, margin, points))
+            return;
+    if (value > 0 && !(separation.is_axis && axes.is_edge()))
+        meet_at_witness(pair, separation.witness, cell_bias(pair), points);
+    else if (axes.is_edge())
+        meet_at_edges(pair, axes.edge, points);
+    else
+        meet_at_vertex(pair, axes, points);
+}
+
+/// In the world, at most eight, those beyond the margin (in units) left out: never the deepest,
+/// which rounding may take there.
+void report(const BoxPair& pair, const BoxPoints& points, const Vec4& position, const Mat4& axes,
+            double margin, PairContacts& out) {
+    const Vec4 normal = axes * points.normal;
+    std::array<ContactPoint, kManifoldInput> list;
+    std::size_t count = 0;
+    const double most = std::max(margin, points.least_separation());
+    for (int i = 0; i < points.count; ++i) {
+        const BoxPoint& p = points.point[i];
+        if (p.separation > most) continue;
+        const Vec4 middle = p.on_b - (0.5 * p.separation) * points.normal;
+        list[count++] = {position + pair.unit * (axes * middle), pair.unit * p.separation,
+                         kFaces * code_of(p.face_a) + code_of(p.face_b)};
+    }
+    const std::size_t kept = reduce_manifold({list.data(), count}, normal);
+    for (std::size_t i = 0; i < kept; ++i)
+        out.add(list[i].feature, normal, list[i].separation, list[i].point);
+}
+
+}  // namespace
+
+void contacts_between(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b, const Pose& pose_b,
+                      double margin, PairContacts& out) {
+    const double distance = stable_norm(pose_b.position - pose_a.position);
+    const double reach = bounding_radius(a) + bounding_radius(b);
+    if (!(distance <= reach + margin)) return;
+
+    const Mat4 axes_a = to_matrix(pose_a.rotor), axes_b = to_matrix(pose_b.rotor);
+    const BoxPair pair = box_pair(a, pose_a.position, axes_a, b, pose_b.position, axes_b);
+    const double scaled_margin = margin / pair.unit;
+    SeparatingAxes axes;
+    if (!find_separating_axes(pair, scaled_margin, axes)) return;
+    const BoxSeparation separation = separation_of(pair, axes);
+    if (separation.value > scaled_margin) return;
+
+    BoxPoints points;
+    find_points(pair, axes, separation, scaled_margin, points);
+    report(pair, points, pose_a.position, axes_a, scaled_margin, out);
+}
+
+}  // namespace tesserae

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "core/contact/contact.hpp"
+#include "core/shape/hyperbox.hpp"
+#include "core/shape/hyperplane.hpp"
+
+namespace tesserae {
+
+/// The box's vertices whose separation is at most `margin` [m], reduced to kManifoldPoints.
+/// Feature: bit i is set for a vertex on the positive side of the box's axis i. A vertex behind the
+/// plane is pushed to the free side too, however deep.
+void contacts_between(const Hyperbox& box, const Pose& pose, const Hyperplane& plane,
+                      const Pose& plane_pose, double margin, PairContacts& out);
+
+}  // namespace tesserae

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/contact/contact.hpp"
+#include "core/shape/hyperbox.hpp"
+#include "core/shape/hypercapsule.hpp"
+
+namespace tesserae {
+
+/// At most two points whose separation is at most `margin` [m], with one normal: where the core is
+/// closest to the box (or the least overlap of the two is), and, where that is a cell or nearly so,
+/// the other end of the stretch of the core that lies over the cell.
+/// Feature: 0 and 1 for the core's ends towards the capsule's -y and +y; 2 + 2 i + side where the
+/// stretch ends at the border of the box across its axis i (side 1: the positive one); 10 for a
+/// point between that belongs to an edge or a vertex of the box.
+/// A core that meets the box is pushed along the best of the ten normals of the facets of their
+/// Minkowski difference; of equally good ones a cell normal, the one across the lowest axis.
+void contacts_between(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
+                      const Pose& box_pose, double margin, PairContacts& out);
+
+}  // namespace tesserae

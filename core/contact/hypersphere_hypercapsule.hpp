@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/contact/contact.hpp"
+#include "core/shape/hypercapsule.hpp"
+#include "core/shape/hypersphere.hpp"
+
+namespace tesserae {
+
+/// At most one point, feature 0, reported when the separation is at most `margin` [m]. A centre on
+/// the capsule's core is pushed along the capsule's x axis.
+void contacts_between(const Hypersphere& sphere, const Pose& pose, const Hypercapsule& capsule,
+                      const Pose& capsule_pose, double margin, PairContacts& out);
+
+}  // namespace tesserae

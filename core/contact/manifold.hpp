@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/algebra/vector.hpp"
+
+namespace tesserae {
+
+/// A point of a pair whose points share one normal.
+struct ContactPoint {
+    Vec4 point = Vec4::Zero();  ///< midway between the two surfaces, world [m]
+    double separation = 0;      ///< along the normal [m], negative when overlapping
+    std::uint32_t feature = 0;  ///< differs from that of every other point of the pair
+};
+
+/// As many points as a pair keeps: a cell has eight corners.
+constexpr std::size_t kManifoldPoints = 8;
+/// As many as reduce_manifold takes: a cell clipped by another has at most 20 corners, and every
+/// one may be there several times over by rounding.
+constexpr std::size_t kManifoldInput = 64;
+
+/// Moves the points to keep to the front, ascending by feature, and returns their number: all of
+/// them up to kManifoldPoints; else the deepest, the farthest from it, the farthest from their
+/// line, the farthest from their plane, and then four times the one farthest from all that are
+/// kept. Distances are seen along the normal. Of points about equally far the deepest is taken,
+/// then the one of lowest feature: the result depends on the set of points, not on their order.
+/// Takes at most kManifoldInput points.
+/// @param normal  unit, of the contact
+std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal);
+
+}  // namespace tesserae
