@@ -1,0 +1,54 @@
+// The gallery's scenes show what they say they show.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "core/contact/find_contacts.hpp"
+#include "core/dynamics/world.hpp"
+#include "scenes/load/load.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+using Kinds = std::set<std::string>;
+
+/// How often bodies of two kinds of shapes overlap or touch, and the deepest overlap [m].
+struct Meetings {
+    std::map<Kinds, int> count;
+    double deepest = 0;
+
+    void add(const Bodies& bodies) {
+        std::vector<Contact> contacts;
+        for (BodyId a = 0; a < bodies.size(); ++a)
+            for (BodyId b = a + 1; b < bodies.size(); ++b) {
+                if (!bodies.is_movable(a) && !bodies.is_movable(b)) continue;
+                contacts.clear();
+                const Shape &s = bodies.type_of(a).shape, &t = bodies.type_of(b).shape;
+                find_contacts(a, s, {bodies.position[a], bodies.rotor[a]}, b, t,
+                              {bodies.position[b], bodies.rotor[b]}, 0, contacts);
+                if (contacts.empty()) continue;
+                ++count[{name_of(s), name_of(t)}];
+                for (const Contact& c : contacts) deepest = std::max(deepest, -c.separation);
+            }
+    }
+};
+
+TEST(Gallery, ShapesMeetInAllNinePairsAndNothingPassesThrough) {
+    const Scene scene = load_scene(TESSERAE_SOURCE_DIR "/scenes/gallery/shapes.toml", {});
+    World world(scene.bodies, *scene.physics);
+    Meetings meetings;
+    for (int step = 0; step < 720; ++step) {
+        world.step(1 / scene.physics->steps_per_second);
+        if (step % 5 == 0) meetings.add(world.bodies());
+    }
+    EXPECT_EQ(meetings.count.size(), 9u);
+    for (const auto& [kinds, count] : meetings.count)
+        EXPECT_GE(count, 2) << *kinds.begin() << " and " << *kinds.rbegin();
+    // A body that passes through another is half its size inside it on the way; the least half size
+    // here is a capsule's radius, 0.18 m.
+    EXPECT_LT(meetings.deepest, 0.09);
+}
+
+}  // namespace
+}  // namespace tesserae::scenes
