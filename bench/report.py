@@ -1,11 +1,12 @@
-"""Makes bench/results out of what the two programs printed.
+"""Makes bench/results out of what the programs printed.
 
-usage: report.py HEAD ACCURACY_CSV HOT_LOOPS_JSON RESULTS_FOLDER
+usage: report.py HEAD ACCURACY_CSV HOT_LOOPS_JSON CONTACTS_DOUBLE_JSON CONTACTS_FLOAT_JSON RESULTS_FOLDER
 HEAD holds the comment lines (machine, build, commit) that begin every CSV file.
 """
 
 import csv
 import json
+import re
 import sys
 
 import matplotlib
@@ -112,8 +113,8 @@ def report_accuracy(head, rows, results):
                "serial_us_per_s_240"], table)
 
 
-def report_hot_loops(head, path, results):
-    """Every counter and the time of an iteration: its median, and deviation over mean."""
+def read_benchmarks(path):
+    """Every counter, and a wall time per iteration: (benchmark, quantity, median, spread)."""
     with open(path) as file:
         runs = json.load(file)["benchmarks"]
     found = {(run["run_name"], run["aggregate_name"]): run for run in runs}
@@ -124,23 +125,51 @@ def report_hot_loops(head, path, results):
     for name in dict.fromkeys(run["run_name"] for run in runs):
         median, cv = found[name, "median"], found[name, "cv"]
         numbers = [k for k, v in median.items() if isinstance(v, float) and k not in bookkeeping]
-        short = name.removesuffix("/real_time").removesuffix("/iterations:40/manual_time")
+        short = re.sub(r"(/iterations:\d+)?/(real|manual)_time$", "", name)
         for key in sorted(numbers):
-            spread = 100 * cv[key] if median[key] else 0
-            table.append([short, key, f"{median[key]:.4g}", f"{spread:.1f}"])
+            table.append((short, key, median[key], 100 * cv[key] if median[key] else 0))
         if name.endswith("/real_time"):
-            table.append([short, f"{median['time_unit']}_per_run", f"{median['real_time']:.4g}",
-                          f"{100 * cv['real_time']:.1f}"])
-    write_csv(f"{results}/hot_loops.csv", head,
-              ["benchmark", "quantity", "median", "spread_percent"], table)
+            table.append((short, f"{median['time_unit']}_per_run", median["real_time"],
+                          100 * cv["real_time"]))
+    return table
+
+
+def write_benchmarks(path, head, table):
+    write_csv(path, head, ["benchmark", "quantity", "median", "spread_percent"],
+              [[name, key, f"{median:.4g}", f"{spread:.1f}"] for name, key, median, spread in table])
+
+
+def ratios_to_bullet(table):
+    """Ours over Bullet's, of the same run; spreads add up as for independent factors."""
+    of = {(name, key): (median, spread) for name, key, median, spread in table}
+    rows = []
+    for (name, key), (median, spread) in of.items():
+        (bullet, _, pair) = name.partition("/")
+        if bullet.startswith("bullet") and not key.startswith("points") and median:
+            ours = of[pair, key]
+            rows.append((f"4D over {name}", f"ratio_{key}", ours[0] / median,
+                         np.hypot(ours[1], spread)))
+    return rows
+
+
+def report_contacts(head, paths, results):
+    """All of the first run; of the others what is Bullet's."""
+    table = []
+    for path in paths:
+        run = read_benchmarks(path)
+        is_first = not table
+        table += [row for row in run if is_first or row[0].startswith("bullet")]
+        table += ratios_to_bullet(run)
+    write_benchmarks(f"{results}/contacts.csv", head, table)
 
 
 def main():
-    head_path, accuracy, hot_loops, results = sys.argv[1:]
+    head_path, accuracy, hot_loops, *contacts, results = sys.argv[1:]
     with open(head_path) as file:
         head = file.read()
     report_accuracy(head, read_accuracy(accuracy), results)
-    report_hot_loops(head, hot_loops, results)
+    write_benchmarks(f"{results}/hot_loops.csv", head, read_benchmarks(hot_loops))
+    report_contacts(head, contacts, results)
 
 
 main()

@@ -4,7 +4,7 @@
 #   bash bench/run.sh
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-install_packages "${packages[@]}" libbenchmark-dev python3-matplotlib python3-numpy
+install_packages "${packages[@]}" libbenchmark-dev libbullet-dev python3-matplotlib python3-numpy
 
 folder=$root/build/bench
 results=$root/bench/results
@@ -15,9 +15,11 @@ mkdir -p "$results" "$raw"
 load() { cut -d ' ' -f 1 /proc/loadavg; }
 load_before=$(load)
 "$folder/bench/accuracy" >"$raw/accuracy.csv"
-"$folder/bench/hot_loops" --benchmark_min_time=0.1 --benchmark_repetitions=7 \
-    --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true \
-    --benchmark_out="$raw/hot_loops.json" --benchmark_out_format=json >/dev/null
+for program in hot_loops contacts_double contacts_float; do
+    "$folder/bench/$program" --benchmark_min_time=0.1 --benchmark_repetitions=7 \
+        --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true \
+        --benchmark_out="$raw/$program.json" --benchmark_out_format=json >/dev/null
+done
 
 # The first lines of every result.
 commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
@@ -29,5 +31,6 @@ changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.t
     echo "# commit: $commit${changed:+ with uncommitted changes}"
     echo "# command: bash bench/run.sh"
 } >"$raw/head.txt"
-/usr/bin/python3 "$root/bench/report.py" "$raw/head.txt" "$raw/accuracy.csv" "$raw/hot_loops.json" "$results"
+/usr/bin/python3 "$root/bench/report.py" "$raw/head.txt" "$raw/accuracy.csv" "$raw/hot_loops.json" \
+    "$raw"/contacts_{double,float}.json "$results"
 echo "wrote $results" >&2
