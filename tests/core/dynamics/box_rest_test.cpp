@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include "core/dynamics/energy.hpp"
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+const Vec4 kDown{0, -10, 0, 0};
+
+/// The rotation in the plane of two unit directions that takes `from` to `to`.
+Rotor rotor_between(const Vec4& from, const Vec4& to) {
+    const Bivector plane = wedge(from, to);
+    const double sine = norm(plane);
+    // Opposite ones are met here along y only: half a turn that takes y to -y.
+    if (sine < 1e-12) return from.dot(to) > 0 ? Rotor{} : exp(Bivector{-0.5 * kPi});
+    return exp(-0.5 * std::atan2(sine, from.dot(to)) / sine * plane);
+}
+
+/// What a box points down with: straight down in its own frame.
+Vec4 down_of(const World& world, BodyId id) {
+    return rotate(reverse(world.bodies().rotor[id]), -Vec4::UnitY());
+}
+
+void run(World& world, int steps) {
+    for (int i = 0; i < steps; ++i) world.step(1.0 / 240);
+}
+
+double speed(const World& world, BodyId id) {
+    return world.bodies().velocity[id].norm() + norm(world.bodies().angular_velocity[id]);
+}
+
+TEST(BoxOnPlane, StandsOnEachOfItsCells) {
+    const Vec4 size{1, 0.8, 1.2, 0.6};
+    for (int axis = 0; axis < 4; ++axis)
+        for (double side : {-1.0, 1.0}) {
+            const Vec4 u = side * Vec4::Unit(axis);
+            const Vec4 start{0, 0.5 * size[axis], 0, 0};
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+            add(bodies, box_type(size, 2), start, Vec4::Zero(), {},
+                rotor_between(u, -Vec4::UnitY()));
+            World world(bodies, PhysicsSettings{});
+            run(world, 480);
+            // The solver leaves overlaps up to the slop alone: 0.005 of the least half side, 0.3 m.
+            EXPECT_LT((world.bodies().position[1] - start).norm(), 0.0015) << u.transpose();
+            EXPECT_LT((down_of(world, 1) - u).norm(), 0.0015 / 0.3) << u.transpose();
+            EXPECT_LT(speed(world, 1), 1e-6) << u.transpose();
+        }
+}
+
+/// Balanced on the feature in which the cells of `axes` meet, then tilted toward the cell of axis
+/// t.
+void expect_fall(const Vec4& size, const std::vector<int>& axes, int t, double side) {
+    Vec4 u = Vec4::Zero();
+    for (int axis : axes) u[axis] = 0.5 * size[axis];
+    u[t] *= 1.05;
+    u[t] = std::copysign(u[t], side);
+    u.normalize();
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.9));
+    const double height = 0.5 * u.cwiseAbs().dot(size);
+    add(bodies, box_type(size, 2), {0, height, 0, 0}, Vec4::Zero(), {},
+        rotor_between(u, -Vec4::UnitY()));
+    World world(bodies, PhysicsSettings{});
+    const double before = potential_energy(world.bodies(), kDown);
+    run(world, 1440);
+    const std::string what = fmt::format("{} axes, toward {}", axes.size(), side * t);
+    EXPECT_GT(down_of(world, 1)[t] * side, 1 - 1e-4) << what;
+    EXPECT_NEAR(world.bodies().position[1][1], 0.5 * size[t], 0.005 * 0.5 * size.minCoeff())
+        << what;
+    EXPECT_LT(speed(world, 1), 1e-3) << what;
+    EXPECT_LT(potential_energy(world.bodies(), kDown), before) << what;
+}
+
+TEST(BoxOnPlane, FallsFromFacesEdgesAndVerticesToTheSideItIsTilted) {
+    // With equal sides the other cells of the feature stay alike, so the fall is along one great
+    // circle to the cell of axis t, whatever the feature.
+    const Vec4 cube{1, 1, 1, 1};
+    for (const std::vector<int>& axes :
+         {std::vector{0, 1}, {1, 3}, {0, 2}, {0, 1, 2}, {1, 2, 3}, {0, 1, 2, 3}})
+        for (int t : axes)
+            for (double side : {-1.0, 1.0}) expect_fall(cube, axes, t, side);
+    // On a face only two cells compete, whatever the sides.
+    for (int t : {0, 3}) expect_fall({1, 0.8, 1.2, 0.7}, {0, 3}, t, 1);
+}
+
+TEST(Stack, OfTwoBoxesStands) {
+    for (const Vec4& upper : {Vec4(1, 1, 1, 1), Vec4(0.6, 0.5, 0.8, 0.7)}) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        add(bodies, box_type({1, 1, 1, 1}, 2), {0, 0.5, 0, 0});
+        add(bodies, box_type(upper, 1), {0.05, 1 + 0.5 * upper[1], -0.1, 0.1});
+        World world(bodies, PhysicsSettings{});
+        run(world, 720);
+        for (BodyId id : {1, 2}) {
+            EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
+            EXPECT_LT(speed(world, id), 1e-4) << id;
+        }
+    }
+}
+
+TEST(Stack, CapsulesSideBySideCarryABox) {
+    BodyType capsule;
+    capsule.shape = Hypercapsule{0.3, 1.5};
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    // Both along z; the box spans them in x and lies on their cores in z. In w everything is alone
+    // in its plane, so nothing pushes it that way.
+    const Rotor along_z = rotor_between(Vec4::UnitY(), Vec4::UnitZ());
+    for (double x : {-0.4, 0.4}) add(bodies, capsule, {x, 0.3, 0, 0}, Vec4::Zero(), {}, along_z);
+    add(bodies, box_type({1.4, 0.4, 1, 1}, 1), {0, 0.8, 0, 0});
+    World world(bodies, PhysicsSettings{});
+    run(world, 480);
+    for (BodyId id : {1, 2, 3})
+        EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 5e-3) << id;
+}
+
+}  // namespace
+}  // namespace tesserae
