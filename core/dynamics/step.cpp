@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-
 namespace tesserae {
 
 LeftFiniteRange::LeftFiniteRange(BodyId id, double t)
