@@ -66,14 +66,23 @@ void expect_fall(const Vec4& size, const std::vector<int>& axes, int t, double s
     add(bodies, box_type(size, 2), {0, height, 0, 0}, Vec4::Zero(), {},
         rotor_between(u, -Vec4::UnitY()));
     World world(bodies, PhysicsSettings{});
-    const double before = potential_energy(world.bodies(), kDown);
-    run(world, 1440);
+    const auto energy = [&] {
+        return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
+    };
+    const double before = energy();
+    double most = before;
+    for (int i = 0; i < 1440; ++i) {
+        run(world, 1);
+        most = std::max(most, energy());
+    }
     const std::string what = fmt::format("{} axes, toward {}", axes.size(), side * t);
     EXPECT_GT(down_of(world, 1)[t] * side, 1 - 1e-4) << what;
     EXPECT_NEAR(world.bodies().position[1][1], 0.5 * size[t], 0.005 * 0.5 * size.minCoeff())
         << what;
     EXPECT_LT(speed(world, 1), 1e-3) << what;
-    EXPECT_LT(potential_energy(world.bodies(), kDown), before) << what;
+    // Pivoting on a contact gains energy of first order in the time step; over 1248 such falls at
+    // 240 Hz the worst gain was 4e-4 of what the fall sets free.
+    EXPECT_LT(most - before, 1e-3 * (before - energy())) << what;
 }
 
 TEST(BoxOnPlane, FallsFromFacesEdgesAndVerticesToTheSideItIsTilted) {
@@ -115,8 +124,10 @@ TEST(Stack, CapsulesSideBySideCarryABox) {
     add(bodies, box_type({1.4, 0.4, 1, 1}, 1), {0, 0.8, 0, 0});
     World world(bodies, PhysicsSettings{});
     run(world, 480);
+    // Less than the slop of the thinnest, the box: 0.005 of 0.2 m. Rollers do creep, at the rate
+    // that the last bit of tilt gives.
     for (BodyId id : {1, 2, 3})
-        EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 5e-3) << id;
+        EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
 }
 
 }  // namespace
