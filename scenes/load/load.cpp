@@ -34,8 +34,8 @@ void load_name(TableReader& root, const Origin& origin, Scene& scene, EffectiveW
             fmt::format("{}: the file's stem names the scene: {}; rename it or give "
                         "[scene] a name",
                         origin.place, kRule));
-    out.table("[scene]", Part::kPicture);
-    out.key(Part::kPicture, "name", scene.name);
+    out.table("[scene]");
+    out.key("name", scene.name);
 }
 
 void load_physics(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out) {
@@ -64,16 +64,16 @@ void load_physics(TableReader& root, const Origin& origin, Scene& scene, Effecti
     reader.finish();
     scene.physics = physics;
 
-    out.table("[physics]", Part::kMotion);
-    out.key(Part::kMotion, "gravity", physics.gravity);
-    out.key(Part::kMotion, "duration", physics.duration);
-    out.key(Part::kMotion, "steps_per_second", physics.steps_per_second);
-    out.key(Part::kMotion, "iterations", std::int64_t{physics.iterations});
-    out.key(Part::kMotion, "substeps", std::int64_t{1});
-    out.key(Part::kMotion, "solver", kSolvers[0]);
-    out.key(Part::kMotion, "integrator", kIntegrators[integrator]);
-    out.key(Part::kMotion, "sleeping", false);
-    out.key(Part::kMotion, "seed", seed);
+    out.table("[physics]");
+    out.key("gravity", physics.gravity);
+    out.key("duration", physics.duration);
+    out.key("steps_per_second", physics.steps_per_second);
+    out.key("iterations", std::int64_t{physics.iterations});
+    out.key("substeps", std::int64_t{1});
+    out.key("solver", kSolvers[0]);
+    out.key("integrator", kIntegrators[integrator]);
+    out.key("sleeping", false);
+    out.key("seed", seed);
 }
 
 Scene load_scene(const std::filesystem::path& file, std::span<const std::string> sets) {
@@ -104,7 +104,7 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     load_render(root, origin, scene, out);
 
     scene.hash = hex_hash(out.text());
-    scene.motion_hash = hex_hash(out.motion());
+    scene.motion_hash = hex_hash(motion_part(out.text()));
     scene.effective = out.take_text();
     return scene;
 }

@@ -9,7 +9,7 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
-constexpr std::size_t kFixedBytes = 7 * 8;  ///< rows, first, hash, step, time, number of impulses
+constexpr std::size_t kFixedBytes = 6 * 8;  ///< rows, first, hash, step, number of impulses
 constexpr std::size_t kFrontBytes = 3 * 8;  ///< length, hash
 
 template <class Value>
@@ -32,7 +32,6 @@ std::string to_bytes(const ResumeRecord& record) {
     put(body, record.first);
     put(body, record.hash);
     put(body, record.step);
-    put(body, record.memory.time);
     put(body, static_cast<std::uint64_t>(record.memory.impulses.size()));
     for (const ContactImpulse& impulse : record.memory.impulses) {
         put(body, impulse.a);
@@ -64,7 +63,6 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     take(bytes, record.first);
     take(bytes, record.hash);
     take(bytes, record.step);
-    take(bytes, record.memory.time);
     take(bytes, impulses);
     if (bytes.size() % kImpulseBytes != 0 || impulses != bytes.size() / kImpulseBytes ||
         record.first >= record.rows)
@@ -86,10 +84,9 @@ std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& b
     put(parts, before);
     put(parts, facts.step);
     put(parts, facts.time);
-    put(parts, facts.report.contacts);
-    put(parts, facts.report.penetration);
-    put(parts, facts.kinetic_energy);
-    put(parts, facts.potential_energy);
+    const auto values = observable_values(facts);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        parts.append(static_cast<const char*>(values[i]), 8 * kObservables[i].width);
     const auto arrays = state_arrays(bodies);
     for (std::size_t i = 0; i < arrays.size(); ++i)
         put(parts, hash_of({reinterpret_cast<const char*>(arrays[i]),

@@ -20,11 +20,15 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
     std::mt19937_64 random(row + 1);
     std::normal_distribution<double> normal;
     Row made;
-    made.facts = {3 * row,
-                  0.0125 * static_cast<double>(row),
-                  {random() % 100, normal(random)},
-                  normal(random),
-                  normal(random)};
+    StepFacts& facts = made.facts;
+    facts.step = 3 * row;
+    facts.time = 0.0125 * static_cast<double>(row);
+    facts.report.contacts = random() % 100;
+    facts.report.penetration = normal(random);
+    facts.kinetic_energy = normal(random);
+    facts.potential_energy = normal(random);
+    facts.momentum = {normal(random), normal(random), -0.0, normal(random)};
+    facts.angular_momentum = {normal(random), 0, normal(random), 5e-324, 1, normal(random)};
     Bodies& b = made.bodies;
     b.type.assign(bodies, 0);
     for (std::size_t i = 0; i < bodies; ++i) {
