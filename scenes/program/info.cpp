@@ -64,6 +64,8 @@ void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
         return norm(row.angular_momentum - first.angular_momentum);
     };
     const auto penetration = [](const StepFacts& row) { return row.report.penetration; };
+    const auto mean = [](const StepFacts& row) { return row.report.mean_penetration; };
+    const auto residual = [](const StepFacts& row) { return row.report.residual; };
     facts.insert(facts.end(),
                  {{"last step", fmt::format("{}", last.step)},
                   {"last time", fmt::format("{} s", last.time)},
@@ -73,7 +75,10 @@ void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
                   {"momentum change", largest(rows, momentum_change, "kg m/s")},
                   {"angular momentum change", largest(rows, angular_change, "kg m^2/s")},
                   {"contacts, last row", fmt::format("{}", last.report.contacts)},
-                  {"deepest penetration", largest(rows, penetration, "m")}});
+                  {"asleep, last row", fmt::format("{} bodies", last.report.asleep)},
+                  {"deepest penetration", largest(rows, penetration, "m")},
+                  {"largest mean penetration", largest(rows, mean, "m")},
+                  {"largest solver residual", largest(rows, residual, "m/s")}});
 }
 
 Facts trajectory_facts(const std::filesystem::path& file) {

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "core/error.hpp"
 #include "scenes/load/hash.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 
@@ -9,7 +10,9 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
-constexpr std::size_t kFixedBytes = 6 * 8;  ///< rows, first, hash, step, number of impulses
+constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
+/// Rows, first, hash, step, numbers of impulses and of bodies.
+constexpr std::size_t kFixedBytes = 7 * 8;
 constexpr std::size_t kFrontBytes = 3 * 8;  ///< length, hash
 
 template <class Value>
@@ -27,19 +30,25 @@ void take(std::string_view& bytes, Value& value) {
 
 std::string to_bytes(const ResumeRecord& record) {
     std::string body;
-    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes);
+    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
+                 record.memory.asleep.size() * kBodyBytes);
     put(body, record.rows);
     put(body, record.first);
     put(body, record.hash);
     put(body, record.step);
-    put(body, static_cast<std::uint64_t>(record.memory.impulses.size()));
-    for (const ContactImpulse& impulse : record.memory.impulses) {
+    const StepMemory& memory = record.memory;
+    TSR_ASSERT(memory.asleep.size() == memory.still.size());
+    put(body, static_cast<std::uint64_t>(memory.impulses.size()));
+    put(body, static_cast<std::uint64_t>(memory.asleep.size()));
+    for (const ContactImpulse& impulse : memory.impulses) {
         put(body, impulse.a);
         put(body, impulse.b);
         put(body, impulse.feature);
         put(body, impulse.normal);
         for (int axis = 0; axis < 4; ++axis) put(body, impulse.tangent[axis]);
     }
+    for (BodyId island : memory.asleep) put(body, island);
+    for (double time : memory.still) put(body, time);
     std::string bytes;
     bytes.reserve(kFrontBytes + body.size());
     put(bytes, static_cast<std::uint64_t>(body.size()));
@@ -58,15 +67,17 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (hash_of(bytes) != hash) return std::nullopt;
 
     ResumeRecord record;
-    std::uint64_t impulses = 0;
+    std::uint64_t impulses = 0, bodies = 0;
     take(bytes, record.rows);
     take(bytes, record.first);
     take(bytes, record.hash);
     take(bytes, record.step);
     take(bytes, impulses);
-    if (bytes.size() % kImpulseBytes != 0 || impulses != bytes.size() / kImpulseBytes ||
-        record.first >= record.rows)
-        return std::nullopt;
+    take(bytes, bodies);
+    const bool fits = impulses <= bytes.size() / kImpulseBytes &&
+                      bodies <= bytes.size() / kBodyBytes &&
+                      bytes.size() == impulses * kImpulseBytes + bodies * kBodyBytes;
+    if (!fits || record.first >= record.rows) return std::nullopt;
     record.memory.impulses.resize(impulses);
     for (ContactImpulse& impulse : record.memory.impulses) {
         take(bytes, impulse.a);
@@ -75,6 +86,10 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
         take(bytes, impulse.normal);
         for (int axis = 0; axis < 4; ++axis) take(bytes, impulse.tangent[axis]);
     }
+    record.memory.asleep.resize(bodies);
+    record.memory.still.resize(bodies);
+    for (BodyId& island : record.memory.asleep) take(bytes, island);
+    for (double& time : record.memory.still) take(bytes, time);
     return record;
 }
 

@@ -178,8 +178,9 @@ Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const
 
 template <class Pointer, class Facts>
 std::array<Pointer, kObservables.size()> values_of(Facts& f) {
-    return {&f.kinetic_energy,   &f.potential_energy, f.momentum.data(),
-            &f.angular_momentum, &f.report.contacts,  &f.report.penetration};
+    return {&f.kinetic_energy,          &f.potential_energy, f.momentum.data(),
+            &f.angular_momentum,        &f.report.contacts,  &f.report.penetration,
+            &f.report.mean_penetration, &f.report.residual,  &f.report.asleep};
 }
 
 }  // namespace

@@ -28,13 +28,16 @@ struct Observable {
     std::size_t width;
     bool is_count;  ///< an integer; else reals
 };
-inline constexpr std::array<Observable, 6> kObservables = {{
+inline constexpr std::array<Observable, 9> kObservables = {{
     {"kinetic_energy", "kg m2 s-2", 1, false},
     {"potential_energy", "kg m2 s-2", 1, false},
     {"momentum", "kg m s-1", 4, false},
     {"angular_momentum", "kg m2 s-1", 6, false},
     {"contacts", "", 1, true},
     {"penetration", "m", 1, false},
+    {"mean_penetration", "m", 1, false},
+    {"solver_residual", "m s-1", 1, false},
+    {"asleep", "", 1, true},
 }};
 
 /// The datasets that grow by a row with every stored step.

@@ -165,6 +165,8 @@ void TrajectoryWriter::File::copy_finished() {
 /// The rows since the flush before are those that the record was made of.
 bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
     if (candidate.rows > data.whole_rows()) return false;
+    const std::size_t sleepers = candidate.memory.asleep.size();
+    if (sleepers != 0 && sleepers != header.bodies) return false;
     Bodies bodies = room_for(header.bodies);
     std::array<std::uint64_t, 2> hash = {};
     StepFacts facts;

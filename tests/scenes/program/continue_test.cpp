@@ -38,11 +38,19 @@ std::vector<std::string> simulation(const std::string& scene, const std::string&
 TEST(Continue, AFinishedSimulationEndsWithTheBytesOfOneStraightRun) {
     const Folder folder("continue");
     const auto scene = folder.write("heap.toml", heap_scene());
-    for (const std::vector<std::string>& every :
-         {std::vector<std::string>{}, std::vector<std::string>{"--store-every", "7"}}) {
+    const std::vector<std::vector<std::string>> settings = {
+        {},
+        {"--store-every", "7"},
+        {"--set", "physics.sleeping=true", "--set", "physics.solver=\"soft\"", "--set",
+         "physics.substeps=3"}};
+    for (const std::vector<std::string>& every : settings) {
         const auto straight = folder.file("straight.h5");
         fs::remove(straight);
         ASSERT_EQ(tesserae(simulation(scene, straight, "2.5", every)).status, 0);
+        if (&every == &settings.back()) {
+            // There are bodies to wake up, or to be left asleep, when the run goes on.
+            EXPECT_GT(TrajectoryReader(straight).facts().back().report.asleep, 0u);
+        }
         for (const char* threads : {"1", "2"}) {
             std::vector<std::string> more = every;
             more.insert(more.end(), {"--threads", threads, "--json"});

@@ -82,6 +82,8 @@ TEST_F(TrajectoryContinue, EndsWithTheBytesOfOneStraightRun) {
             ASSERT_TRUE(resume.has_value());
             EXPECT_EQ(resume->step, row.facts.step);
             EXPECT_EQ(resume->memory.time, row.memory.time);
+            EXPECT_EQ(resume->memory.asleep, row.memory.asleep);
+            EXPECT_EQ(resume->memory.still, row.memory.still);
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i)
                 EXPECT_EQ(resume->memory.impulses[i].tangent, row.memory.impulses[i].tangent);

@@ -25,6 +25,9 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
     facts.time = 0.0125 * static_cast<double>(row);
     facts.report.contacts = random() % 100;
     facts.report.penetration = normal(random);
+    facts.report.mean_penetration = normal(random);
+    facts.report.residual = normal(random);
+    facts.report.asleep = random() % 100;
     facts.kinetic_energy = normal(random);
     facts.potential_energy = normal(random);
     facts.momentum = {normal(random), normal(random), -0.0, normal(random)};
@@ -40,6 +43,10 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
         b.rotor.push_back({std::cos(angle), {0, 0, std::sin(angle), 0, 0, 0}, 0});
     }
     made.memory.time = made.facts.time;
+    for (std::size_t i = 0; i < (row % 2 == 0 ? bodies : 0); ++i) {
+        made.memory.asleep.push_back(random() % 3 == 0 ? kAwake : 0);
+        made.memory.still.push_back(normal(random));
+    }
     for (std::uint64_t i = 0; i < random() % 50; ++i)
         made.memory.impulses.push_back({1,
                                         2,

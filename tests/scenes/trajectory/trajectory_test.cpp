@@ -73,6 +73,9 @@ void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_
         EXPECT_EQ(reader.times()[i], row.facts.time);
         EXPECT_EQ(facts[i].report.contacts, row.facts.report.contacts);
         EXPECT_EQ(facts[i].report.penetration, row.facts.report.penetration);
+        EXPECT_EQ(facts[i].report.mean_penetration, row.facts.report.mean_penetration);
+        EXPECT_EQ(facts[i].report.residual, row.facts.report.residual);
+        EXPECT_EQ(facts[i].report.asleep, row.facts.report.asleep);
         EXPECT_EQ(facts[i].kinetic_energy, row.facts.kinetic_energy);
         EXPECT_EQ(facts[i].potential_energy, row.facts.potential_energy);
         EXPECT_EQ(facts[i].momentum, row.facts.momentum);
@@ -122,12 +125,12 @@ TEST_F(TrajectoryTest, FollowsH5md) {
     H5Aread(attribute, H5T_NATIVE_INT, &dimension);
     H5Aclose(attribute);
     EXPECT_EQ(dimension, 4);
-    // One dataset of steps under ten names, as H5MD asks of what was stored together.
+    // One dataset of steps under thirteen names, as H5MD asks of what was stored together.
     for (const char* shared : {"step", "time"}) {
         const auto address = [&](const std::string& element) {
             H5O_info_t info;
             H5Oget_info_by_name1(file, (element + "/" + shared).c_str(), &info, H5P_DEFAULT);
-            EXPECT_EQ(info.rc, 10u);
+            EXPECT_EQ(info.rc, 13u);
             return info.addr;
         };
         EXPECT_EQ(address("/particles/bodies/rotor"), address("/observables/contacts"));
@@ -158,6 +161,8 @@ TEST_F(TrajectoryTest, AnInterruptedRunEndsWithTheSameBytes) {
             ASSERT_TRUE(resume.has_value());
             EXPECT_EQ(resume->step, row.facts.step);
             EXPECT_EQ(resume->memory.time, row.memory.time);
+            EXPECT_EQ(resume->memory.asleep, row.memory.asleep);
+            EXPECT_EQ(resume->memory.still, row.memory.still);
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i) {
                 EXPECT_EQ(resume->memory.impulses[i].normal, row.memory.impulses[i].normal);
