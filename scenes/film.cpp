@@ -49,7 +49,7 @@ bool is_done(const Scene& scene, const fs::path& exr, const fs::path& png, bool 
 std::string id_names(const Scene& scene) {
     // Enough for a person and for mattes; a header is read whole by every viewer.
     constexpr std::size_t kMaxNames = 10'000;
-    nlohmann::ordered_json names;
+    auto names = nlohmann::ordered_json::object();
     for (std::size_t i = 0; i < std::min(scene.names.size(), kMaxNames); ++i) {
         const NamedBodies& n = scene.names[i];
         const std::string ids = n.count > 1 ? fmt::format("{}-{}", n.first + 1, n.first + n.count)

@@ -45,6 +45,25 @@ std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
                          [&](std::uint32_t type) { return predicate(type); });
 }
 
+/// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
+void decide_solver(const PhysicsSettings& physics, Plan& plan) {
+    if (plan.movable_bodies == 0) {
+        plan.decisions.push_back({"contacts", false, "no body can be moved by them"});
+        return;
+    }
+    plan.decisions.push_back(
+        {"sub-steps", physics.substeps > 1,
+         fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations)});
+    const bool soft = physics.solver == Solver::kSoft;
+    plan.decisions.push_back(
+        {"relaxation of soft contacts", soft,
+         soft ? "solver = \"soft\": velocity that only removes overlap is given back"
+              : "solver = \"impulse\""});
+    plan.decisions.push_back(
+        {"sleeping", physics.sleeping,
+         physics.sleeping ? "islands at rest are left out until touched" : "sleeping = false"});
+}
+
 void decide_physics(const Scene& scene, Plan& plan) {
     if (!scene.physics)
         plan.decisions.push_back({"physics", false, "the scene has no [physics] table: a still"});
@@ -63,6 +82,7 @@ void decide_physics(const Scene& scene, Plan& plan) {
                                   any_turning_inertia
                                       ? "there are bodies whose inertia depends on the direction"
                                       : "spheres only: inertia is the same in every plane"});
+    if (plan.moves) decide_solver(*scene.physics, plan);
 }
 
 void decide_picture(const Scene& scene, Plan& plan) {

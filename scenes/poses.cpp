@@ -27,11 +27,11 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
     trajectory_ = std::make_unique<TrajectoryReader>(trajectory);
     const TrajectoryHeader& header = trajectory_->header();
     if (header.motion_hash != scene.motion_hash)
-        throw InputError(
-            fmt::format("{}: is a trajectory of another motion: {}; simulate this scene, or render "
-                        "the one that "
-                        "the trajectory was made from",
-                        trajectory.string(), first_difference(header.effective, scene.effective)));
+        throw InputError(fmt::format(
+            "{}: is a trajectory of another motion: {}; simulate this scene, or render "
+            "the one that "
+            "the trajectory was made from",
+            trajectory.string(), first_motion_difference(header.effective, scene.effective)));
     if (header.bodies != scene.bodies.size())
         throw InputError(fmt::format("{}: holds {} bodies, the scene has {}", trajectory.string(),
                                      header.bodies, scene.bodies.size()));

@@ -35,7 +35,7 @@ struct Scene {
     std::string source;     ///< the file's text as read
     std::string effective;  ///< canonical TOML after overrides: the same scene gives the same text
     std::string hash;       ///< 32 hex digits of `effective`
-    std::string motion_hash;  ///< 32 hex digits of its part that moves bodies
+    std::string motion_hash;  ///< 32 hex digits of its part that moves bodies: see motion_part()
 };
 
 }  // namespace tesserae::scenes

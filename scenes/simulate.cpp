@@ -4,10 +4,10 @@
 #include <chrono>
 
 #include "core/dynamics/energy.hpp"
+#include "core/dynamics/momentum.hpp"
 #include "core/dynamics/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
-#include "scenes/load/effective.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"
 #include "scenes/timeline.hpp"
@@ -37,16 +37,7 @@ bool is_complete(const Scene& scene, const fs::path& file, const std::vector<std
                  bool overwrite) {
     if (overwrite || !fs::exists(file)) return false;
     const TrajectoryReader there(file);
-    if (there.header().motion_hash != scene.motion_hash)
-        throw InputError(fmt::format(
-            "{}: holds another motion: {}; choose another file, or --overwrite", file.string(),
-            first_difference(there.header().effective, scene.effective)));
-    if (there.steps() != steps)
-        throw InputError(
-            fmt::format("{}: stores other steps of this motion ({} rows, {} wanted); "
-                        "choose another file, or --overwrite",
-                        file.string(), there.rows(), steps.size()));
-    return true;
+    return there.header().motion_hash == scene.motion_hash && there.steps() == steps;
 }
 
 StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& found,
@@ -55,6 +46,8 @@ StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& fou
     facts.step = step;
     facts.report = found;
     facts.kinetic_energy = kinetic_energy(bodies);
+    facts.momentum = total_momentum(bodies);
+    facts.angular_momentum = total_angular_momentum(bodies);
     if (scene.physics) {
         facts.time = static_cast<double>(step) / scene.physics->steps_per_second;
         facts.potential_energy = potential_energy(bodies, scene.physics->gravity);
@@ -91,7 +84,6 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     std::optional<parallel::ParallelWorld> world;
     if (plan.moves) {
         world.emplace(std::move(start), *scene.physics);
-        memory.time = static_cast<double>(step) / scene.physics->steps_per_second;
         world->memory() = std::move(memory);
     }
     const Bodies& bodies = world ? world->bodies() : start;

@@ -21,9 +21,11 @@ struct SimulateReport {
 std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_every);
 
 /// Moves the scene's bodies and stores their states in `file`. A whole file of the same motion and
-/// steps is left as it is, an unfinished one is continued: the bytes are those of one straight run.
+/// steps is left as it is; an unfinished one is continued, and so is a finished one of a shorter
+/// duration: the bytes of every dataset are those of one straight run.
 /// Runs on the threads of the caller's parallel::Threads.
-/// @throws InputError   `file` is of another motion or stores other steps, and not `overwrite`
+/// @throws InputError   `file` is of another motion, stores other steps or more than the scene's,
+///                      and not `overwrite`
 /// @throws RunError     a body left the finite range, or the file cannot be written
 /// @throws Stopped      after a signal; what is stored is kept
 SimulateReport simulate(const Scene& scene, const Plan& plan, const std::filesystem::path& file,

@@ -16,10 +16,16 @@ std::string list(const double* values, int count) {
     return text + "]";
 }
 
+/// Which lines of an effective text are looked at.
+enum class Lines {
+    kAll,
+    kMotion,  ///< those that decide how bodies move
+};
+
 /// Walks the lines of an effective text and knows in which table it is.
 class Walker {
   public:
-    explicit Walker(std::string_view text) : rest_(text) { next(); }
+    Walker(std::string_view text, Lines lines) : rest_(text), lines_(lines) { next(); }
 
     bool at_end() const { return at_end_; }
     std::string_view line() const { return line_; }
@@ -35,6 +41,12 @@ class Walker {
     }
 
     void next() {
+        do next_line();
+        while (lines_ == Lines::kMotion && !at_end_ && !decides_motion());
+    }
+
+  private:
+    void next_line() {
         // A name is known to the lines after it, so that a changed name shows as a change.
         if (key() == "name") name_ = value();
         do {
@@ -49,7 +61,12 @@ class Walker {
         name_ = {};
     }
 
-  private:
+    bool decides_motion() const {
+        if (header_ == "[physics]") return key() != "duration";
+        if (header_ != "[[body]]" && header_ != "[[lattice]]") return false;
+        return key() != "name" && key() != "material" && key() != "visible";
+    }
+
     std::string_view before_equals() const {
         const auto at = line_.find(" = ");
         if (line_.starts_with('[') || at == std::string_view::npos) return {};
@@ -57,9 +74,24 @@ class Walker {
     }
 
     std::string_view rest_, line_, header_, name_;
+    Lines lines_;
     std::size_t index_ = 0;
     bool at_end_ = false;
 };
+
+/// The first line in which two texts differ; empty if they are equal.
+std::string difference(Walker a, Walker b) {
+    while (!a.at_end() && !b.at_end() && a.line() == b.line()) a.next(), b.next();
+    if (a.at_end() && b.at_end()) return {};
+    const auto shown = [](const Walker& w) {
+        return w.at_end() ? std::string("nothing") : printable(w.line());
+    };
+    if (a.at_end() || b.at_end() || a.key().empty() || a.key() != b.key())
+        return fmt::format("{}: {} there, {} here", a.at_end() ? b.where() : a.where(), shown(a),
+                           shown(b));
+    return fmt::format("{}.{}: {} there, {} here", a.where(), a.key(), printable(a.value()),
+                       printable(b.value()));
+}
 
 }  // namespace
 
@@ -118,30 +150,28 @@ std::string toml_text(const Bivector& b) {
                        toml_text(b.yw), toml_text(b.zw));
 }
 
-void EffectiveWriter::table(std::string_view header, Part part) {
+void EffectiveWriter::table(std::string_view header) {
     const std::string_view gap = text_.empty() ? "" : "\n";
     text_.append(gap).append(header).append("\n");
-    if (part == Part::kMotion) motion_.append(header).append("\n");
 }
 
-void EffectiveWriter::line(Part part, std::string_view name, std::string_view value) {
-    const std::size_t start = text_.size();
+void EffectiveWriter::line(std::string_view name, std::string_view value) {
     text_.append(name).append(" = ").append(value).append("\n");
-    if (part == Part::kMotion) motion_.append(text_, start);
+}
+
+std::string motion_part(std::string_view effective) {
+    std::string part;
+    for (Walker at(effective, Lines::kMotion); !at.at_end(); at.next())
+        part.append(at.line()).append("\n");
+    return part;
 }
 
 std::string first_difference(const std::string& there, const std::string& here) {
-    Walker a(there), b(here);
-    while (!a.at_end() && !b.at_end() && a.line() == b.line()) a.next(), b.next();
-    if (a.at_end() && b.at_end()) return {};
-    const auto shown = [](const Walker& w) {
-        return w.at_end() ? std::string("nothing") : printable(w.line());
-    };
-    if (a.at_end() || b.at_end() || a.key().empty() || a.key() != b.key())
-        return fmt::format("{}: {} there, {} here", a.at_end() ? b.where() : a.where(), shown(a),
-                           shown(b));
-    return fmt::format("{}.{}: {} there, {} here", a.where(), a.key(), printable(a.value()),
-                       printable(b.value()));
+    return difference(Walker(there, Lines::kAll), Walker(here, Lines::kAll));
+}
+
+std::string first_motion_difference(const std::string& there, const std::string& here) {
+    return difference(Walker(there, Lines::kMotion), Walker(here, Lines::kMotion));
 }
 
 }  // namespace tesserae::scenes

@@ -23,34 +23,32 @@ std::string toml_text(const Vec4& value);
 std::string toml_text(const render::Color& value);
 std::string toml_text(const Bivector& value);  ///< { xy = ..., ... }
 
-/// What a key of a scene decides.
-enum class Part {
-    kMotion,   ///< how bodies move: a trajectory depends on it
-    kPicture,  ///< only how they are shown or called
-};
-
-/// Writes a scene's canonical text: every key in the caller's order, and apart from it the lines
-/// that decide motion.
+/// Writes a scene's canonical text: every key in the caller's order.
 class EffectiveWriter {
   public:
-    /// Starts a table; `header` with its brackets. A table of the picture part has no motion keys.
-    void table(std::string_view header, Part part);
+    /// Starts a table; `header` with its brackets.
+    void table(std::string_view header);
     template <class T>
-    void key(Part part, std::string_view name, const T& value) {
-        line(part, name, toml_text(value));
+    void key(std::string_view name, const T& value) {
+        line(name, toml_text(value));
     }
-    void line(Part part, std::string_view name, std::string_view value);
+    void line(std::string_view name, std::string_view value);
 
     const std::string& text() const { return text_; }
-    const std::string& motion() const { return motion_; }
     std::string take_text() { return std::move(text_); }
 
   private:
-    std::string text_, motion_;
+    std::string text_;
 };
+
+/// The lines of an effective scene that decide how bodies move, which is what a trajectory depends
+/// on: not how they are shown or called, nor for how long they move.
+std::string motion_part(std::string_view effective);
 
 /// The first key in which two effective scenes differ, with both values: "render.samples: 16 there,
 /// 4 here". Empty if they are equal.
 std::string first_difference(const std::string& there, const std::string& here);
+/// The same among the lines that decide motion.
+std::string first_motion_difference(const std::string& there, const std::string& here);
 
 }  // namespace tesserae::scenes

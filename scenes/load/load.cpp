@@ -34,8 +34,8 @@ void load_name(TableReader& root, const Origin& origin, Scene& scene, EffectiveW
             fmt::format("{}: the file's stem names the scene: {}; rename it or give "
                         "[scene] a name",
                         origin.place, kRule));
-    out.table("[scene]", Part::kPicture);
-    out.key(Part::kPicture, "name", scene.name);
+    out.table("[scene]");
+    out.key("name", scene.name);
 }
 
 void load_physics(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out) {
@@ -49,31 +49,30 @@ void load_physics(TableReader& root, const Origin& origin, Scene& scene, Effecti
     reader.read("duration", physics.duration, Rule::kNonNegative);
     reader.read("steps_per_second", physics.steps_per_second, Rule::kPositive);
     reader.read("iterations", physics.iterations, 1, 10000);
-    int substeps = 1;
-    if (reader.read("substeps", substeps, 1, 1000))
-        require_built(reader, "substeps", substeps == 1);
-    std::size_t solver = 0, integrator = 0;
-    if (reader.read("solver", solver, kSolvers)) require_built(reader, "solver", solver == 0);
+    reader.read("substeps", physics.substeps, 1, 1000);
+    std::size_t solver = physics.solver == Solver::kImpulse ? 0 : 1;
+    std::size_t integrator = physics.integrator == Integrator::kEuler ? 0 : 1;
+    reader.read("solver", solver, kSolvers);
     reader.read("integrator", integrator, kIntegrators);
+    physics.solver = solver == 0 ? Solver::kImpulse : Solver::kSoft;
     physics.integrator = integrator == 0 ? Integrator::kEuler : Integrator::kMidpoint;
-    bool sleeping = false;
-    if (reader.read("sleeping", sleeping)) require_built(reader, "sleeping", !sleeping);
+    reader.read("sleeping", physics.sleeping);
     auto seed = static_cast<std::int64_t>(physics.seed);
     reader.read("seed", seed, 0, std::numeric_limits<std::int64_t>::max());
     physics.seed = static_cast<std::uint64_t>(seed);
     reader.finish();
     scene.physics = physics;
 
-    out.table("[physics]", Part::kMotion);
-    out.key(Part::kMotion, "gravity", physics.gravity);
-    out.key(Part::kMotion, "duration", physics.duration);
-    out.key(Part::kMotion, "steps_per_second", physics.steps_per_second);
-    out.key(Part::kMotion, "iterations", std::int64_t{physics.iterations});
-    out.key(Part::kMotion, "substeps", std::int64_t{1});
-    out.key(Part::kMotion, "solver", kSolvers[0]);
-    out.key(Part::kMotion, "integrator", kIntegrators[integrator]);
-    out.key(Part::kMotion, "sleeping", false);
-    out.key(Part::kMotion, "seed", seed);
+    out.table("[physics]");
+    out.key("gravity", physics.gravity);
+    out.key("duration", physics.duration);
+    out.key("steps_per_second", physics.steps_per_second);
+    out.key("iterations", std::int64_t{physics.iterations});
+    out.key("substeps", std::int64_t{physics.substeps});
+    out.key("solver", kSolvers[solver]);
+    out.key("integrator", kIntegrators[integrator]);
+    out.key("sleeping", physics.sleeping);
+    out.key("seed", seed);
 }
 
 Scene load_scene(const std::filesystem::path& file, std::span<const std::string> sets) {
@@ -104,7 +103,7 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     load_render(root, origin, scene, out);
 
     scene.hash = hex_hash(out.text());
-    scene.motion_hash = hex_hash(out.motion());
+    scene.motion_hash = hex_hash(motion_part(out.text()));
     scene.effective = out.take_text();
     return scene;
 }

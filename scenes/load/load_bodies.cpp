@@ -178,43 +178,39 @@ void set_mass(TableReader& reader, BodyTable& body) {
 }
 
 void write_type(BodyTable& body, EffectiveWriter& out) {
-    out.key(Part::kMotion, "shape", name_of(body.type.shape));
+    out.key("shape", name_of(body.type.shape));
     std::visit(
         [&](auto& s) {
-            s.parameters(s, [&](const char* key, const auto& value, Rule) {
-                out.key(Part::kMotion, key, value);
-            });
+            s.parameters(s, [&](const char* key, const auto& value, Rule) { out.key(key, value); });
         },
         body.shape_as_written);
     const bool bounded = is_bounded(body.type.shape);
-    if (bounded) out.key(Part::kMotion, "mass", body.type.mass);
-    out.key(Part::kMotion, "friction", body.type.friction);
-    out.key(Part::kMotion, "restitution", body.type.restitution);
+    if (bounded) out.key("mass", body.type.mass);
+    out.key("friction", body.type.friction);
+    out.key("restitution", body.type.restitution);
     const bool position = body.type.fixed_position, rotation = body.type.fixed_rotation;
-    out.line(Part::kMotion, "fixed",
-             position ? (rotation ? R"(["position", "rotation"])" : R"(["position"])")
-                      : (rotation ? R"(["rotation"])" : "[]"));
+    out.line("fixed", position ? (rotation ? R"(["position", "rotation"])" : R"(["position"])")
+                               : (rotation ? R"(["rotation"])" : "[]"));
     // The default grey has no name.
-    if (body.appearance.material != 0) out.key(Part::kPicture, "material", body.material);
-    out.key(Part::kPicture, "visible", body.appearance.visible);
+    if (body.appearance.material != 0) out.key("material", body.material);
+    out.key("visible", body.appearance.visible);
 }
 
 void write_placing(const BodyTable& body, EffectiveWriter& out) {
-    out.table(body.lattice ? "[[lattice]]" : "[[body]]", Part::kMotion);
-    out.key(Part::kPicture, "name", body.name);
+    out.table(body.lattice ? "[[lattice]]" : "[[body]]");
+    out.key("name", body.name);
     if (is_bounded(body.type.shape)) {
-        out.key(Part::kMotion, "position", body.position);
-        out.key(Part::kMotion, "rotation", body.rotation);
-        out.key(Part::kMotion, "velocity", body.velocity);
-        out.key(Part::kMotion, "angular_velocity", body.angular_velocity);
+        out.key("position", body.position);
+        out.key("rotation", body.rotation);
+        out.key("velocity", body.velocity);
+        out.key("angular_velocity", body.angular_velocity);
     }
     if (!body.lattice) return;
     const auto& [count, spacing, jitter, seed] = *body.lattice;
-    out.line(Part::kMotion, "count",
-             fmt::format("[{}, {}, {}, {}]", count[0], count[1], count[2], count[3]));
-    out.key(Part::kMotion, "spacing", spacing);
-    out.key(Part::kMotion, "jitter", jitter);
-    out.key(Part::kMotion, "seed", static_cast<std::int64_t>(seed));
+    out.line("count", fmt::format("[{}, {}, {}, {}]", count[0], count[1], count[2], count[3]));
+    out.key("spacing", spacing);
+    out.key("jitter", jitter);
+    out.key("seed", static_cast<std::int64_t>(seed));
 }
 
 /// Reads tables one after another into the scene's bodies.

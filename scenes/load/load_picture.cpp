@@ -37,16 +37,16 @@ render::Material load_material(TableReader& reader, EffectiveWriter& out) {
         require_built(reader, "emission", (emission == 0).all());
     reader.finish();
 
-    out.table("[[material]]", Part::kPicture);
-    out.key(Part::kPicture, "name", m.name);
-    out.key(Part::kPicture, "kind", kKinds[0]);
-    out.key(Part::kPicture, "albedo", m.albedo);
-    out.key(Part::kPicture, "pattern", kPatterns[pattern]);
-    out.key(Part::kPicture, "pattern_albedo", m.pattern_albedo);
-    out.key(Part::kPicture, "pattern_size", m.pattern_size);
-    out.key(Part::kPicture, "ior", ior);
-    out.key(Part::kPicture, "roughness", roughness);
-    out.key(Part::kPicture, "emission", emission);
+    out.table("[[material]]");
+    out.key("name", m.name);
+    out.key("kind", kKinds[0]);
+    out.key("albedo", m.albedo);
+    out.key("pattern", kPatterns[pattern]);
+    out.key("pattern_albedo", m.pattern_albedo);
+    out.key("pattern_size", m.pattern_size);
+    out.key("ior", ior);
+    out.key("roughness", roughness);
+    out.key("emission", emission);
     return m;
 }
 
@@ -138,17 +138,17 @@ void load_camera(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         reader.finish();
         require_frame(reader, camera);
     }
-    out.table("[camera]", Part::kPicture);
-    out.key(Part::kPicture, "position", camera.position);
-    out.key(Part::kPicture, "look_at", camera.look_at);
-    out.key(Part::kPicture, "up", camera.up);
-    out.key(Part::kPicture, "fourth", camera.fourth);
-    out.key(Part::kPicture, "field_of_view", camera.field_of_view);
-    out.key(Part::kPicture, "aperture", aperture);
-    out.key(Part::kPicture, "focus_distance", focus_distance);
-    out.key(Part::kPicture, "shutter", shutter);
-    out.key(Part::kPicture, "slice_thickness", slice_thickness);
-    out.key(Part::kPicture, "slices", std::int64_t{slices});
+    out.table("[camera]");
+    out.key("position", camera.position);
+    out.key("look_at", camera.look_at);
+    out.key("up", camera.up);
+    out.key("fourth", camera.fourth);
+    out.key("field_of_view", camera.field_of_view);
+    out.key("aperture", aperture);
+    out.key("focus_distance", focus_distance);
+    out.key("shutter", shutter);
+    out.key("slice_thickness", slice_thickness);
+    out.key("slices", std::int64_t{slices});
 }
 
 namespace {
@@ -164,15 +164,15 @@ void load_light(TableReader& reader, Scene& scene, EffectiveWriter& out) {
         reader.read("type", type, kLightTypes);
     reader.read("color", color, kNotNegative);
     reader.read("strength", strength, kNotNegative);
-    out.table("[[light]]", Part::kPicture);
-    out.key(Part::kPicture, "type", kLightTypes[type]);
+    out.table("[[light]]");
+    out.key("type", kLightTypes[type]);
     if (type == kSun) {
         render::Sun sun;
         if (reader.require("direction", "expected four numbers: the way that the light travels"))
             reader.read("direction", sun.direction, Rule::kNonZero);
         reader.read("angle", sun.angle, Interval{0, 30});
-        out.key(Part::kPicture, "direction", sun.direction);
-        out.key(Part::kPicture, "angle", sun.angle);
+        out.key("direction", sun.direction);
+        out.key("angle", sun.angle);
         sun.direction = stable_normalized(sun.direction);
         sun.irradiance = color * strength;
         scene.lights.suns.push_back(sun);
@@ -188,8 +188,8 @@ void load_light(TableReader& reader, Scene& scene, EffectiveWriter& out) {
     }
     reader.finish();
     if (type == kPoint || type == kSphere) require_built(reader, "type", false);
-    out.key(Part::kPicture, "color", color);
-    out.key(Part::kPicture, "strength", strength);
+    out.key("color", color);
+    out.key("strength", strength);
 }
 
 }  // namespace
@@ -203,10 +203,10 @@ void load_lights(TableReader& root, const Origin& origin, Scene& scene, Effectiv
     if (!tables.empty()) return;
     // A scene without lights is lit by a sky of 1.
     scene.lights.sky = render::Color::Ones();
-    out.table("[[light]]", Part::kPicture);
-    out.key(Part::kPicture, "type", kLightTypes[kSky]);
-    out.key(Part::kPicture, "color", scene.lights.sky);
-    out.key(Part::kPicture, "strength", 1.0);
+    out.table("[[light]]");
+    out.key("type", kLightTypes[kSky]);
+    out.key("color", scene.lights.sky);
+    out.key("strength", 1.0);
 }
 
 }  // namespace tesserae::scenes

@@ -79,25 +79,25 @@ void read_crop(TableReader& reader, render::Settings& settings) {
 }
 
 void write_render(const render::Settings& s, EffectiveWriter& out) {
-    out.table("[render]", Part::kPicture);
-    out.line(Part::kPicture, "size", fmt::format("[{}, {}]", s.width, s.height));
-    out.key(Part::kPicture, "frames_per_second", s.frames_per_second);
-    out.key(Part::kPicture, "samples", std::int64_t{s.samples});
-    out.key(Part::kPicture, "integrator", kIntegrators[0]);
-    out.key(Part::kPicture, "bounces", std::int64_t{4});
-    out.key(Part::kPicture, "intersector", kIntersectors[static_cast<std::size_t>(s.intersector)]);
-    out.key(Part::kPicture, "max_steps", std::int64_t{s.max_steps});
-    out.key(Part::kPicture, "max_distance", s.max_distance);
-    out.key(Part::kPicture, "tile", std::int64_t{s.tile});
-    out.key(Part::kPicture, "filter", "box");
-    out.key(Part::kPicture, "filter_width", 1.0);
-    out.key(Part::kPicture, "noise_target", 0.0);
-    out.key(Part::kPicture, "max_samples", std::int64_t{s.samples});
-    out.line(Part::kPicture, "channels", channels_text(s.channels));
-    out.key(Part::kPicture, "exposure", s.exposure);
+    out.table("[render]");
+    out.line("size", fmt::format("[{}, {}]", s.width, s.height));
+    out.key("frames_per_second", s.frames_per_second);
+    out.key("samples", std::int64_t{s.samples});
+    out.key("integrator", kIntegrators[0]);
+    out.key("bounces", std::int64_t{4});
+    out.key("intersector", kIntersectors[static_cast<std::size_t>(s.intersector)]);
+    out.key("max_steps", std::int64_t{s.max_steps});
+    out.key("max_distance", s.max_distance);
+    out.key("tile", std::int64_t{s.tile});
+    out.key("filter", "box");
+    out.key("filter_width", 1.0);
+    out.key("noise_target", 0.0);
+    out.key("max_samples", std::int64_t{s.samples});
+    out.line("channels", channels_text(s.channels));
+    out.key("exposure", s.exposure);
     // Last, and only where given: a text without it can be loaded again.
     if (s.crop)
-        out.line(Part::kPicture, "crop",
+        out.line("crop",
                  fmt::format("[{}, {}, {}, {}]", s.crop->x0, s.crop->y0, s.crop->x1, s.crop->y1));
 }
 

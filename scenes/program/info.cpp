@@ -2,7 +2,9 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 
 #include "core/error.hpp"
@@ -33,6 +35,52 @@ Facts scene_facts(const std::filesystem::path& file, int threads) {
             {"samples", fmt::format("{}", scene.render.samples)}};
 }
 
+double energy_of(const StepFacts& row) { return row.kinetic_energy + row.potential_energy; }
+
+/// The largest value of a function of the rows, and the step where it is first reached.
+template <class Value>
+std::string largest(const std::vector<StepFacts>& rows, Value&& value, const char* unit) {
+    const auto at = std::max_element(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
+        return value(a) < value(b);
+    });
+    return fmt::format("{:.3g} {} at step {}", value(*at), unit, at->step);
+}
+
+/// How far the stored steps are from what an exact motion would keep. Gravity and bodies that move
+/// at a given velocity change energy and momentum too.
+void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
+    const StepFacts &first = rows.front(), &last = rows.back();
+    const auto energy = [](const StepFacts& row) {
+        return fmt::format("{:.9g} J: {:.6g} kinetic, {:.6g} potential", energy_of(row),
+                           row.kinetic_energy, row.potential_energy);
+    };
+    const auto energy_change = [&](const StepFacts& row) {
+        return std::abs(energy_of(row) - energy_of(first));
+    };
+    const auto momentum_change = [&](const StepFacts& row) {
+        return (row.momentum - first.momentum).norm();
+    };
+    const auto angular_change = [&](const StepFacts& row) {
+        return norm(row.angular_momentum - first.angular_momentum);
+    };
+    const auto penetration = [](const StepFacts& row) { return row.report.penetration; };
+    const auto mean = [](const StepFacts& row) { return row.report.mean_penetration; };
+    const auto residual = [](const StepFacts& row) { return row.report.residual; };
+    facts.insert(facts.end(),
+                 {{"last step", fmt::format("{}", last.step)},
+                  {"last time", fmt::format("{} s", last.time)},
+                  {"energy, first row", energy(first)},
+                  {"energy, last row", energy(last)},
+                  {"largest energy change", largest(rows, energy_change, "J")},
+                  {"momentum change", largest(rows, momentum_change, "kg m/s")},
+                  {"angular momentum change", largest(rows, angular_change, "kg m^2/s")},
+                  {"contacts, last row", fmt::format("{}", last.report.contacts)},
+                  {"asleep, last row", fmt::format("{} bodies", last.report.asleep)},
+                  {"deepest penetration", largest(rows, penetration, "m")},
+                  {"largest mean penetration", largest(rows, mean, "m")},
+                  {"largest solver residual", largest(rows, residual, "m/s")}});
+}
+
 Facts trajectory_facts(const std::filesystem::path& file) {
     const TrajectoryReader trajectory(file);
     const TrajectoryHeader& header = trajectory.header();
@@ -44,20 +92,7 @@ Facts trajectory_facts(const std::filesystem::path& file) {
                    {"steps per second", fmt::format("{}", header.steps_per_second)},
                    {"rows", fmt::format("{}", trajectory.rows())}};
     if (trajectory.rows() == 0) return facts;
-    const std::vector<StepFacts> rows = trajectory.facts();
-    double penetration = 0;
-    for (const StepFacts& row : rows) penetration = std::max(penetration, row.report.penetration);
-    const auto energy = [](const StepFacts& row) {
-        return fmt::format("{:.6g} J kinetic, {:.6g} J potential", row.kinetic_energy,
-                           row.potential_energy);
-    };
-    facts.insert(facts.end(),
-                 {{"last step", fmt::format("{}", rows.back().step)},
-                  {"last time", fmt::format("{} s", rows.back().time)},
-                  {"energy, first row", energy(rows.front())},
-                  {"energy, last row", energy(rows.back())},
-                  {"contacts, last row", fmt::format("{}", rows.back().report.contacts)},
-                  {"deepest penetration", fmt::format("{:.3g} m", penetration)}});
+    append_diagnostics(facts, trajectory.facts());
     return facts;
 }
 

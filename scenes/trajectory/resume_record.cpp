@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "core/error.hpp"
 #include "scenes/load/hash.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 
@@ -9,7 +10,9 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
-constexpr std::size_t kFixedBytes = 7 * 8;  ///< rows, first, hash, step, time, number of impulses
+constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
+/// Rows, first, hash, step, numbers of impulses and of bodies.
+constexpr std::size_t kFixedBytes = 7 * 8;
 constexpr std::size_t kFrontBytes = 3 * 8;  ///< length, hash
 
 template <class Value>
@@ -27,20 +30,25 @@ void take(std::string_view& bytes, Value& value) {
 
 std::string to_bytes(const ResumeRecord& record) {
     std::string body;
-    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes);
+    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
+                 record.memory.asleep.size() * kBodyBytes);
     put(body, record.rows);
     put(body, record.first);
     put(body, record.hash);
     put(body, record.step);
-    put(body, record.memory.time);
-    put(body, static_cast<std::uint64_t>(record.memory.impulses.size()));
-    for (const ContactImpulse& impulse : record.memory.impulses) {
+    const StepMemory& memory = record.memory;
+    TSR_ASSERT(memory.asleep.size() == memory.still.size());
+    put(body, static_cast<std::uint64_t>(memory.impulses.size()));
+    put(body, static_cast<std::uint64_t>(memory.asleep.size()));
+    for (const ContactImpulse& impulse : memory.impulses) {
         put(body, impulse.a);
         put(body, impulse.b);
         put(body, impulse.feature);
         put(body, impulse.normal);
         for (int axis = 0; axis < 4; ++axis) put(body, impulse.tangent[axis]);
     }
+    for (BodyId island : memory.asleep) put(body, island);
+    for (double time : memory.still) put(body, time);
     std::string bytes;
     bytes.reserve(kFrontBytes + body.size());
     put(bytes, static_cast<std::uint64_t>(body.size()));
@@ -59,16 +67,17 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (hash_of(bytes) != hash) return std::nullopt;
 
     ResumeRecord record;
-    std::uint64_t impulses = 0;
+    std::uint64_t impulses = 0, bodies = 0;
     take(bytes, record.rows);
     take(bytes, record.first);
     take(bytes, record.hash);
     take(bytes, record.step);
-    take(bytes, record.memory.time);
     take(bytes, impulses);
-    if (bytes.size() % kImpulseBytes != 0 || impulses != bytes.size() / kImpulseBytes ||
-        record.first >= record.rows)
-        return std::nullopt;
+    take(bytes, bodies);
+    const bool fits = impulses <= bytes.size() / kImpulseBytes &&
+                      bodies <= bytes.size() / kBodyBytes &&
+                      bytes.size() == impulses * kImpulseBytes + bodies * kBodyBytes;
+    if (!fits || record.first >= record.rows) return std::nullopt;
     record.memory.impulses.resize(impulses);
     for (ContactImpulse& impulse : record.memory.impulses) {
         take(bytes, impulse.a);
@@ -77,6 +86,10 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
         take(bytes, impulse.normal);
         for (int axis = 0; axis < 4; ++axis) take(bytes, impulse.tangent[axis]);
     }
+    record.memory.asleep.resize(bodies);
+    record.memory.still.resize(bodies);
+    for (BodyId& island : record.memory.asleep) take(bytes, island);
+    for (double& time : record.memory.still) take(bytes, time);
     return record;
 }
 
@@ -86,10 +99,9 @@ std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& b
     put(parts, before);
     put(parts, facts.step);
     put(parts, facts.time);
-    put(parts, facts.report.contacts);
-    put(parts, facts.report.penetration);
-    put(parts, facts.kinetic_energy);
-    put(parts, facts.potential_energy);
+    const auto values = observable_values(facts);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        parts.append(static_cast<const char*>(values[i]), 8 * kObservables[i].width);
     const auto arrays = state_arrays(bodies);
     for (std::size_t i = 0; i < arrays.size(); ++i)
         put(parts, hash_of({reinterpret_cast<const char*>(arrays[i]),

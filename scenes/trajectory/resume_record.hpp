@@ -9,13 +9,13 @@
 
 namespace tesserae::scenes {
 
-/// What an unfinished trajectory needs beside its rows to be continued bit for bit, as of a flush.
+/// What a trajectory needs beside its rows to be continued bit for bit, as of a flush.
 struct ResumeRecord {
     std::uint64_t rows = 0;                  ///< that the file had
     std::uint64_t first = 0;                 ///< the first row since the flush before
     std::array<std::uint64_t, 2> hash = {};  ///< of the rows from `first` on: see hash_with_row()
     std::uint64_t step = 0;                  ///< of the last row
-    StepMemory memory;                       ///< after that step
+    StepMemory memory;                       ///< after that step; its time is that of the step
 };
 
 /// The record as bytes, with their own length and hash in front.

@@ -15,7 +15,7 @@
 namespace tesserae::scenes {
 
 /// What a trajectory says of itself. Only `motion_hash`, `bodies`, `steps_per_second` and
-/// `store_every` decide whether an unfinished file can be continued.
+/// `store_every` decide whether a file can be continued.
 struct TrajectoryHeader {
     std::string scene_name, source, effective, hash, motion_hash;
     std::string program_version;
@@ -30,6 +30,8 @@ struct StepFacts {
     double time = 0;  ///< [s]
     StepReport report;
     double kinetic_energy = 0, potential_energy = 0;  ///< [J]
+    Vec4 momentum = Vec4::Zero();                     ///< [kg m/s]
+    Bivector angular_momentum;                        ///< about the origin [kg m^2/s]
 };
 
 /// Writes FILE.h5.partial row by row, FILE.h5 once finish()ed. The bytes of every dataset are a
@@ -44,9 +46,12 @@ struct StepFacts {
 /// unfinished name.
 class TrajectoryWriter {
   public:
-    /// Continues an unfinished file of the same motion and steps, else starts one.
-    /// @param steps       all steps that will be stored, ascending
-    /// @param overwrite   an unfinished file of another motion or of other steps is replaced
+    /// Continues an unfinished file of the same motion whose rows are the first of `steps`; else a
+    /// copy of such a finished one, which stays whole until the copy takes its name; else starts
+    /// anew.
+    /// @param steps       all steps that will be stored, ascending, at least one
+    /// @param overwrite   a finished file, and an unfinished one of another motion or of other
+    ///                    steps, is replaced
     /// @throws InputError   such a file is there, and not `overwrite`
     /// @throws RunError     another process has the file, or the system does not let it be read:
     ///                      it is left as it is
@@ -77,7 +82,8 @@ class TrajectoryWriter {
     /// Everything appended so far goes to the system now.
     void flush();
 
-    /// After the last row: takes out what only resuming needs, checks, syncs, renames.
+    /// After the last row: leaves what a longer run needs to go on (52 bytes a contact that
+    /// pushes), takes out what only resuming needs, checks, syncs, renames.
     void finish();
 
   private:

@@ -26,15 +26,22 @@ constexpr const char* kScene = "/parameters/scene";
 /// rows: compressed chunks that grow are moved, and their old place, which the last flush still
 /// points to, is used again; so a chunk is written once.
 constexpr std::uint64_t kChunkBytes = 1 << 20;
-/// Rows of a chunk of the 8-byte columns: uncompressed, rewritten in place with the same old rows.
+/// Numbers in a chunk of a column: uncompressed, rewritten in place with the same old rows.
 constexpr std::uint64_t kColumnChunk = 1024;
+/// Bytes of a chunk of a finished file's record, usual 8 KiB.
+constexpr hsize_t kRecordChunk = 8 * 1024;
 /// The most that gzip can shrink anything.
 constexpr std::uint64_t kMostCompression = 1032;
 
 std::string element_path(const char* name) { return std::string(kBodies) + "/" + name; }
+std::string observable_path(const char* name) { return std::string("/observables/") + name; }
 
-Handle create_column(hid_t parent, const std::string& name, hid_t type, const char* unit) {
-    Handle column = hdf5::create_growing(parent, name, type, {0}, {kColumnChunk}, false);
+/// A column of numbers, or of `width` numbers a row.
+Handle create_column(hid_t parent, const std::string& name, hid_t type, const char* unit,
+                     std::size_t width = 1) {
+    Extent extent = {0}, chunk = {kColumnChunk / width};
+    if (width > 1) extent.push_back(width), chunk.push_back(width);
+    Handle column = hdf5::create_growing(parent, name, type, extent, chunk, false);
     if (*unit) hdf5::add_text_attribute(column.get(), "unit", unit);
     return column;
 }
@@ -94,14 +101,11 @@ void create_bodies(const Handle& file, std::uint64_t bodies) {
 
 void create_observables(const Handle& file) {
     const Handle group = hdf5::create_group(file.get(), "/observables");
-    const auto add = [&](const char* name, hid_t type, const char* unit) {
-        const Handle parent = hdf5::create_group(group.get(), name);
-        create_column(parent.get(), "value", type, unit);
-    };
-    add("kinetic_energy", H5T_IEEE_F64LE, "kg m2 s-2");
-    add("potential_energy", H5T_IEEE_F64LE, "kg m2 s-2");
-    add("contacts", H5T_STD_I64LE, "");
-    add("penetration", H5T_IEEE_F64LE, "m");
+    for (const Observable& o : kObservables) {
+        const Handle parent = hdf5::create_group(group.get(), o.name);
+        create_column(parent.get(), "value", o.is_count ? H5T_STD_I64LE : H5T_IEEE_F64LE, o.unit,
+                      o.width);
+    }
 }
 
 /// All elements were stored at the same steps: H5MD has them share the datasets.
@@ -110,8 +114,7 @@ void share_steps(const Handle& file) {
     std::vector<std::string> to;
     for (std::size_t i = 1; i < kStateElements.size(); ++i)
         to.push_back(element_path(kStateElements[i].name));
-    for (const char* name : {"kinetic_energy", "potential_energy", "contacts", "penetration"})
-        to.push_back(std::string("/observables/") + name);
+    for (const Observable& o : kObservables) to.push_back(observable_path(o.name));
     for (const std::string& element : to)
         for (const char* name : {"/step", "/time"})
             hdf5::hard_link(file.get(), from + name, element + name);
@@ -173,11 +176,20 @@ Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const
     return dataset;
 }
 
+template <class Pointer, class Facts>
+std::array<Pointer, kObservables.size()> values_of(Facts& f) {
+    return {&f.kinetic_energy,          &f.potential_energy, f.momentum.data(),
+            &f.angular_momentum,        &f.report.contacts,  &f.report.penetration,
+            &f.report.mean_penetration, &f.report.residual,  &f.report.asleep};
+}
+
 }  // namespace
 
-std::array<const Handle*, 10> TrajectoryDatasets::all() const {
-    return {&step,     &time,           &state[0],         &state[1], &state[2],
-            &state[3], &kinetic_energy, &potential_energy, &contacts, &penetration};
+std::vector<const Handle*> TrajectoryDatasets::all() const {
+    std::vector<const Handle*> all = {&step, &time};
+    for (const Handle& dataset : state) all.push_back(&dataset);
+    for (const Handle& dataset : observable) all.push_back(&dataset);
+    return all;
 }
 
 std::uint64_t TrajectoryDatasets::whole_rows() const {
@@ -205,6 +217,14 @@ std::array<const double*, 4> state_arrays(const Bodies& bodies) {
             reinterpret_cast<const double*>(bodies.angular_velocity.data())};
 }
 
+std::array<void*, kObservables.size()> observable_values(StepFacts& facts) {
+    return values_of<void*>(facts);
+}
+
+std::array<const void*, kObservables.size()> observable_values(const StepFacts& facts) {
+    return values_of<const void*>(facts);
+}
+
 void create_layout(const Handle& file, const TrajectoryHeader& header) {
     create_h5md(file, header.program_version);
     create_bodies(file, header.bodies);
@@ -213,6 +233,7 @@ void create_layout(const Handle& file, const TrajectoryHeader& header) {
     hdf5::create_group(file.get(), "/parameters");
     // The group that goes at the end is named first: see trajectory_driver.hpp.
     hdf5::create_group(file.get(), kResume);
+    hdf5::create_growing(file.get(), kCheckpoint, H5T_STD_U8LE, {0}, {kRecordChunk}, false);
     fill_scene(hdf5::create_group(file.get(), kScene), header);
 }
 
@@ -235,10 +256,12 @@ TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies,
     for (std::size_t i = 0; i < kStateElements.size(); ++i)
         data.state[i] = open_numbers(file.get(), element_path(kStateElements[i].name) + "/value",
                                      H5T_FLOAT, {bodies, kStateElements[i].width}, file_bytes);
-    data.kinetic_energy = column("/observables/kinetic_energy/value", H5T_FLOAT);
-    data.potential_energy = column("/observables/potential_energy/value", H5T_FLOAT);
-    data.contacts = column("/observables/contacts/value", H5T_INTEGER);
-    data.penetration = column("/observables/penetration/value", H5T_FLOAT);
+    for (std::size_t i = 0; i < kObservables.size(); ++i) {
+        const Observable& o = kObservables[i];
+        data.observable[i] = open_numbers(file.get(), observable_path(o.name) + "/value",
+                                          o.is_count ? H5T_INTEGER : H5T_FLOAT,
+                                          o.width > 1 ? Extent{o.width} : Extent{}, file_bytes);
+    }
     return data;
 }
 
@@ -294,10 +317,11 @@ void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFact
     data.resize(row + 1);
     hdf5::write_rows(data.step, row, 1, H5T_NATIVE_UINT64, &facts.step);
     hdf5::write_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
-    hdf5::write_rows(data.kinetic_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.kinetic_energy);
-    hdf5::write_rows(data.potential_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.potential_energy);
-    hdf5::write_rows(data.contacts, row, 1, H5T_NATIVE_UINT64, &facts.report.contacts);
-    hdf5::write_rows(data.penetration, row, 1, H5T_NATIVE_DOUBLE, &facts.report.penetration);
+    const auto values = observable_values(facts);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        hdf5::write_rows(data.observable[i], row, 1,
+                         kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
+                         values[i]);
     const auto arrays = state_arrays(bodies);
     if (bodies.size() == 0) return;
     for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -307,10 +331,11 @@ void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFact
 void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& facts, Bodies& bodies) {
     hdf5::read_rows(data.step, row, 1, H5T_NATIVE_UINT64, &facts.step);
     hdf5::read_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
-    hdf5::read_rows(data.kinetic_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.kinetic_energy);
-    hdf5::read_rows(data.potential_energy, row, 1, H5T_NATIVE_DOUBLE, &facts.potential_energy);
-    hdf5::read_rows(data.contacts, row, 1, H5T_NATIVE_UINT64, &facts.report.contacts);
-    hdf5::read_rows(data.penetration, row, 1, H5T_NATIVE_DOUBLE, &facts.report.penetration);
+    const auto values = observable_values(facts);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        hdf5::read_rows(data.observable[i], row, 1,
+                        kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
+                        values[i]);
     const auto arrays = state_arrays(bodies);
     if (bodies.size() == 0) return;
     for (std::size_t i = 0; i < arrays.size(); ++i)

@@ -21,13 +21,32 @@ inline constexpr std::array<StateElement, 4> kStateElements = {{
     {"angular_velocity", "rad s-1", 6},
 }};
 
+/// What sums up a stored step: an H5MD observable of `width` numbers of 8 bytes.
+struct Observable {
+    const char* name;
+    const char* unit;
+    std::size_t width;
+    bool is_count;  ///< an integer; else reals
+};
+inline constexpr std::array<Observable, 9> kObservables = {{
+    {"kinetic_energy", "kg m2 s-2", 1, false},
+    {"potential_energy", "kg m2 s-2", 1, false},
+    {"momentum", "kg m s-1", 4, false},
+    {"angular_momentum", "kg m2 s-1", 6, false},
+    {"contacts", "", 1, true},
+    {"penetration", "m", 1, false},
+    {"mean_penetration", "m", 1, false},
+    {"solver_residual", "m s-1", 1, false},
+    {"asleep", "", 1, true},
+}};
+
 /// The datasets that grow by a row with every stored step.
 struct TrajectoryDatasets {
     hdf5::Handle step, time;
-    std::array<hdf5::Handle, 4> state;  ///< in the order of kStateElements
-    hdf5::Handle kinetic_energy, potential_energy, contacts, penetration;
+    std::array<hdf5::Handle, kStateElements.size()> state;     ///< in that order
+    std::array<hdf5::Handle, kObservables.size()> observable;  ///< in that order
 
-    std::array<const hdf5::Handle*, 10> all() const;
+    std::vector<const hdf5::Handle*> all() const;
     /// Rows that every dataset has.
     std::uint64_t whole_rows() const;
     /// Drops or adds rows where a dataset has more or fewer.
@@ -38,7 +57,14 @@ struct TrajectoryDatasets {
 std::array<const double*, 4> state_arrays(const Bodies& bodies);
 std::array<double*, 4> state_arrays(Bodies& bodies);
 
-/// The group of what only continuing needs.
+/// Where a step's observables lie in memory, in the order of kObservables.
+std::array<const void*, kObservables.size()> observable_values(const StepFacts& facts);
+std::array<void*, kObservables.size()> observable_values(StepFacts& facts);
+
+/// The record (resume_record.hpp) of a finished file, from which it can be continued: bytes, none
+/// while the file grows.
+inline constexpr const char* kCheckpoint = "/parameters/checkpoint";
+/// The group of what a growing file is continued from.
 inline constexpr const char* kResume = "/parameters/resume";
 
 /// Everything but the rows. @throws hdf5::Failure

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/error.hpp"
 #include "scenes/trajectory/trajectory.hpp"
@@ -98,22 +99,21 @@ std::vector<StepFacts> TrajectoryReader::facts() const {
     const File& f = *file_;
     std::vector<StepFacts> facts(rows());
     if (facts.empty()) return facts;
-    std::vector<double> reals(facts.size());
-    std::vector<std::uint64_t> counts(facts.size());
-    const auto read = [&](const hdf5::Handle& column, auto& values, hid_t type, auto&& set) {
-        f.reading([&] { hdf5::read_rows(column, 0, values.size(), type, values.data()); });
-        for (std::size_t i = 0; i < facts.size(); ++i) set(facts[i], values[i]);
-    };
-    const hid_t real = H5T_NATIVE_DOUBLE;
     for (std::size_t i = 0; i < facts.size(); ++i) {
         facts[i].step = f.steps[i];
         facts[i].time = f.times[i];
     }
-    read(f.data.kinetic_energy, reals, real, [](auto& s, double v) { s.kinetic_energy = v; });
-    read(f.data.potential_energy, reals, real, [](auto& s, double v) { s.potential_energy = v; });
-    read(f.data.penetration, reals, real, [](auto& s, double v) { s.report.penetration = v; });
-    read(f.data.contacts, counts, H5T_NATIVE_UINT64,
-         [](auto& s, std::uint64_t v) { s.report.contacts = v; });
+    for (std::size_t o = 0; o < kObservables.size(); ++o) {
+        const std::size_t bytes = 8 * kObservables[o].width;
+        std::string column(facts.size() * bytes, '\0');
+        f.reading([&] {
+            hdf5::read_rows(f.data.observable[o], 0, facts.size(),
+                            kObservables[o].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
+                            column.data());
+        });
+        for (std::size_t i = 0; i < facts.size(); ++i)
+            std::memcpy(observable_values(facts[i])[o], column.data() + i * bytes, bytes);
+    }
     return facts;
 }
 

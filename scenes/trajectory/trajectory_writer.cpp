@@ -22,12 +22,19 @@ constexpr std::chrono::seconds kFlushInterval(2);
 constexpr const char* kSlots[2] = {"/parameters/resume/a", "/parameters/resume/b"};
 constexpr hsize_t kSlotChunk = 64 * 1024;
 
-std::optional<ResumeRecord> read_slot(const hdf5::Handle& slot, std::uint64_t file_bytes) {
-    const hdf5::Extent extent = hdf5::extent_of(slot);
+std::optional<ResumeRecord> read_record(const hdf5::Handle& dataset, std::uint64_t file_bytes) {
+    const hdf5::Extent extent = hdf5::extent_of(dataset);
     if (extent.size() != 1 || extent[0] == 0 || extent[0] > file_bytes) return std::nullopt;
     std::string bytes(extent[0], '\0');
-    hdf5::read_rows(slot, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
+    hdf5::read_rows(dataset, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
     return to_record(bytes);
+}
+
+/// A dataset of records never shrinks while the file is open: a record says itself how long it is.
+void write_record(const hdf5::Handle& dataset, const ResumeRecord& record) {
+    const std::string bytes = to_bytes(record);
+    if (hdf5::extent_of(dataset)[0] < bytes.size()) hdf5::resize(dataset, bytes.size());
+    hdf5::write_rows(dataset, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
 }
 
 Bodies room_for(std::uint64_t bodies) {
@@ -50,7 +57,8 @@ struct TrajectoryWriter::File {
 
     hdf5::Handle file;  // closed after what is in it
     TrajectoryDatasets data;
-    hdf5::Handle slots[2];
+    hdf5::Handle checkpoint;
+    hdf5::Handle slots[2];  ///< none in a file that is finished but for its name
 
     std::uint64_t rows = 0;
     ResumeRecord record;  ///< of the rows appended since the last flush
@@ -62,16 +70,22 @@ struct TrajectoryWriter::File {
     File(const fs::path& path, const TrajectoryHeader& h, std::vector<std::uint64_t> s)
         : lock(path), header(h), steps(std::move(s)) {}
 
+    std::uint64_t finished_rows() const;
+    void copy_finished();
     bool continue_leftover(bool overwrite);
     TrajectoryHeader open_leftover();
     bool take_leftover(bool overwrite);
     void reopen();
     std::optional<std::string> other_motion(const TrajectoryHeader& there) const;
-    std::optional<std::string> other_steps(const TrajectoryHeader& there) const;
+    std::optional<std::string> other_steps(const TrajectoryHeader& there,
+                                           const std::vector<std::uint64_t>& stored) const;
     bool is_good(const ResumeRecord& candidate) const;
     bool find_record(std::uint64_t file_bytes);
+    void create_slots();
     void start();
     void flush();
+    void write_checkpoint();
+    void close_datasets();
     void forget();
 
     /// Runs what writes. @throws RunError   with the path; everything later fails too
@@ -94,7 +108,7 @@ std::optional<std::string> TrajectoryWriter::File::other_motion(
     const TrajectoryHeader& there) const {
     if (there.motion_hash != header.motion_hash)
         return fmt::format("is of another motion: {}",
-                           first_difference(there.effective, header.effective));
+                           first_motion_difference(there.effective, header.effective));
     if (there.bodies != header.bodies)
         return fmt::format("has {} bodies, here {}", there.bodies, header.bodies);
     if (there.steps_per_second != header.steps_per_second)
@@ -110,28 +124,49 @@ std::optional<std::string> TrajectoryWriter::File::other_motion(
     return std::nullopt;
 }
 
-/// The same by the rows that the leftover has.
+/// The same by the steps that it has, which must be the first of those wanted.
 std::optional<std::string> TrajectoryWriter::File::other_steps(
-    const TrajectoryHeader& there) const {
-    std::vector<std::uint64_t> stored(record.rows);
-    hdf5::read_rows(data.step, 0, stored.size(), H5T_NATIVE_UINT64, stored.data());
+    const TrajectoryHeader& there, const std::vector<std::uint64_t>& stored) const {
     const auto [a, b] = std::mismatch(stored.begin(), stored.end(), steps.begin(), steps.end());
-    // A file that was about to get its name can only be of all the steps.
-    const bool whole = !slots[0];
-    if (a == stored.end() && (b == steps.end() || !whole)) return std::nullopt;
-    const auto here = [&](bool any, std::uint64_t step) {
-        return any ? fmt::format("of step {}", step) : std::string("the end");
-    };
+    if (a == stored.end()) return std::nullopt;
+    std::string what =
+        b == steps.end()
+            ? fmt::format("goes on to step {} in {} rows, here to step {} in {}", stored.back(),
+                          stored.size(), steps.empty() ? 0 : steps.back(), steps.size())
+            : fmt::format("stores other steps: row {} is of step {}, here of step {}",
+                          a - stored.begin(), *a, *b);
     const std::string cause = first_difference(there.effective, header.effective);
-    return fmt::format("stores other steps: row {} is {}, here {}{}{}", a - stored.begin(),
-                       here(a != stored.end(), a != stored.end() ? *a : 0),
-                       here(b != steps.end(), b != steps.end() ? *b : 0), cause.empty() ? "" : "; ",
-                       cause);
+    return cause.empty() ? what : what + "; " + cause;
+}
+
+/// Rows of a finished file that is there, to be continued.
+std::uint64_t TrajectoryWriter::File::finished_rows() const {
+    if (!fs::exists(lock.path())) return 0;
+    const TrajectoryReader there(lock.path());
+    auto other = other_motion(there.header());
+    if (!other) other = other_steps(there.header(), there.steps());
+    if (other)
+        throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
+                                     lock.path().string(), *other));
+    return there.rows();
+}
+
+/// A finished file is continued in a copy, so that it stays whole until the copy takes its name.
+void TrajectoryWriter::File::copy_finished() {
+    forget();
+    std::error_code error;
+    fs::copy_file(lock.path(), lock.partial(), fs::copy_options::overwrite_existing, error);
+    if (error)
+        throw RunError(fmt::format("{}: cannot be copied to {}: {}", lock.path().string(),
+                                   lock.partial().string(), error.message()));
+    note.clear();
 }
 
 /// The rows since the flush before are those that the record was made of.
 bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
     if (candidate.rows > data.whole_rows()) return false;
+    const std::size_t sleepers = candidate.memory.asleep.size();
+    if (sleepers != 0 && sleepers != header.bodies) return false;
     Bodies bodies = room_for(header.bodies);
     std::array<std::uint64_t, 2> hash = {};
     StepFacts facts;
@@ -144,29 +179,27 @@ bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
 
 /// The record of the last whole flush; none: false.
 bool TrajectoryWriter::File::find_record(std::uint64_t file_bytes) {
-    // finish() takes the slots out once every row is flushed: then there is nothing to resume.
-    if (!hdf5::has_link(file.get(), kResume)) {
-        record.rows = data.whole_rows();
-        if (record.rows == 0) return false;
-        hdf5::read_rows(data.step, record.rows - 1, 1, H5T_NATIVE_UINT64, &record.step);
-        return true;
-    }
     bool found = false;
-    for (int i = 0; i < 2; ++i) {
-        slots[i] = hdf5::open_dataset(file.get(), kSlots[i]);
-        const auto candidate = read_slot(slots[i], file_bytes);
-        if (!candidate || (found && candidate->rows <= record.rows)) continue;
+    const auto takes = [&](const hdf5::Handle& dataset) {
+        const auto candidate = read_record(dataset, file_bytes);
+        if (!candidate || (found && candidate->rows <= record.rows)) return false;
         try {
-            if (!is_good(*candidate)) continue;
+            if (!is_good(*candidate)) return false;
         } catch (const hdf5::SystemFailure&) {
             throw;
         } catch (const hdf5::Failure&) {
-            continue;
+            return false;
         }
         record = *candidate;
-        next_slot = 1 - i;
-        found = true;
+        return found = true;
+    };
+    const bool grows = hdf5::has_link(file.get(), kResume);
+    for (int i = 0; grows && i < 2; ++i) {
+        slots[i] = hdf5::open_dataset(file.get(), kSlots[i]);
+        if (takes(slots[i])) next_slot = 1 - i;
     }
+    checkpoint = hdf5::open_dataset(file.get(), kCheckpoint);
+    takes(checkpoint);
     return found;
 }
 
@@ -186,23 +219,36 @@ TrajectoryHeader TrajectoryWriter::File::open_leftover() {
 bool TrajectoryWriter::File::take_leftover(bool overwrite) {
     const TrajectoryHeader there = open_leftover();
     auto other = other_motion(there);
-    if (!other) other = other_steps(there);
+    if (!other) {
+        std::vector<std::uint64_t> stored(rows);
+        hdf5::read_rows(data.step, 0, rows, H5T_NATIVE_UINT64, stored.data());
+        other = other_steps(there, stored);
+    }
     if (other && overwrite) throw hdf5::Failure(*other);
     if (other)
         throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
                                      lock.partial().string(), *other));
-    // One that was about to get its name is left as it is.
-    if (!slots[0]) return true;
+    if (!slots[0]) {
+        // One that was about to get its name is left as it is.
+        if (rows == steps.size()) return true;
+        hdf5::create_group(file.get(), kResume);
+        create_slots();
+        write_record(slots[0], record);
+        hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+        reopen();
+    }
     const auto all = data.all();
-    const bool longer = std::any_of(all.begin(), all.end(), [&](const hdf5::Handle* dataset) {
-        return hdf5::extent_of(*dataset)[0] != rows;
-    });
+    const bool longer = hdf5::extent_of(checkpoint)[0] != 0 ||
+                        std::any_of(all.begin(), all.end(), [&](const hdf5::Handle* dataset) {
+                            return hdf5::extent_of(*dataset)[0] != rows;
+                        });
     const bool other_texts = there.source != header.source || there.effective != header.effective ||
                              there.hash != header.hash || there.scene_name != header.scene_name;
     if (!longer && !other_texts) return true;
     // The datasets are shortened first, and in a flush of their own: what they free lies where the
     // file on disk still has something.
     data.resize(rows);
+    hdf5::resize(checkpoint, 0);
     reopen();
     if (other_texts) {
         replace_scene(file, header);
@@ -213,8 +259,7 @@ bool TrajectoryWriter::File::take_leftover(bool overwrite) {
 
 /// Forgets, as HDF5 does with a file, which places in it are free.
 void TrajectoryWriter::File::reopen() {
-    data = {};
-    for (hdf5::Handle& slot : slots) slot = {};
+    close_datasets();
     file.close();
     open_leftover();
 }
@@ -231,12 +276,17 @@ bool TrajectoryWriter::File::continue_leftover(bool overwrite) try {
     return false;
 }
 
-void TrajectoryWriter::File::start() {
-    file = hdf5::create_file(lock.partial());
-    create_layout(file, header);
+void TrajectoryWriter::File::create_slots() {
     for (int i = 0; i < 2; ++i)
         slots[i] =
             hdf5::create_growing(file.get(), kSlots[i], H5T_STD_U8LE, {0}, {kSlotChunk}, false);
+}
+
+void TrajectoryWriter::File::start() {
+    file = hdf5::create_file(lock.partial());
+    create_layout(file, header);
+    create_slots();
+    checkpoint = hdf5::open_dataset(file.get(), kCheckpoint);
     hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
     data = open_datasets(file, header.bodies, fs::file_size(lock.partial()));
     rows = 0;
@@ -248,11 +298,7 @@ void TrajectoryWriter::File::start() {
 void TrajectoryWriter::File::flush() {
     if (flushed) return;
     record.rows = rows;
-    const std::string bytes = to_bytes(record);
-    const hdf5::Handle& slot = slots[next_slot];
-    // A slot never shrinks: a record says itself how long it is.
-    if (hdf5::extent_of(slot)[0] < bytes.size()) hdf5::resize(slot, bytes.size());
-    hdf5::write_rows(slot, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
+    write_record(slots[next_slot], record);
     hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
     next_slot = 1 - next_slot;
     record.first = rows;
@@ -261,17 +307,43 @@ void TrajectoryWriter::File::flush() {
     last_flush = Clock::now();
 }
 
+/// The record by which a finished file can be continued. It holds the hash of the last row alone,
+/// so that its bytes do not depend on when the file was flushed.
+void TrajectoryWriter::File::write_checkpoint() {
+    ResumeRecord last = record;
+    last.rows = rows;
+    last.first = rows - 1;
+    StepFacts facts;
+    Bodies bodies = room_for(header.bodies);
+    read_row(data, last.first, facts, bodies);
+    last.hash = hash_with_row({}, facts, bodies);
+    write_record(checkpoint, last);
+    hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
+}
+
+void TrajectoryWriter::File::close_datasets() {
+    data = {};
+    checkpoint = {};
+    for (hdf5::Handle& slot : slots) slot = {};
+}
+
 /// Closes whatever is open, without a word.
 void TrajectoryWriter::File::forget() {
-    data = {};
-    for (hdf5::Handle& slot : slots) slot = {};
+    close_datasets();
     file = {};
+    rows = 0;
 }
 
 TrajectoryWriter::TrajectoryWriter(const fs::path& path, const TrajectoryHeader& header,
                                    std::vector<std::uint64_t> steps, bool overwrite)
     : file_(std::make_unique<File>(path, header, std::move(steps))) {
-    if (!file_->continue_leftover(overwrite)) file_->writing([&] { file_->start(); });
+    const std::uint64_t finished = overwrite ? 0 : file_->finished_rows();
+    bool continued = file_->continue_leftover(overwrite);
+    if (file_->rows < finished) {
+        file_->copy_finished();
+        continued = file_->continue_leftover(overwrite);
+    }
+    if (!continued) file_->writing([&] { file_->start(); });
     file_->record.first = file_->rows;
     file_->record.hash = {};
     file_->lock.admit_readers();
@@ -293,11 +365,11 @@ std::uint64_t TrajectoryWriter::rows() const { return file_->rows; }
 std::optional<TrajectoryWriter::Resume> TrajectoryWriter::resume(Bodies& bodies) const {
     if (file_->rows == 0) return std::nullopt;
     TSR_ASSERT(bodies.size() == file_->header.bodies);
-    file_->writing([&] {
-        StepFacts facts;
-        read_row(file_->data, file_->rows - 1, facts, bodies);
-    });
-    return Resume{file_->record.step, file_->record.memory};
+    StepFacts facts;
+    file_->writing([&] { read_row(file_->data, file_->rows - 1, facts, bodies); });
+    Resume resume{file_->record.step, file_->record.memory};
+    resume.memory.time = facts.time;
+    return resume;
 }
 
 void TrajectoryWriter::append(const StepFacts& facts, const Bodies& bodies,
@@ -322,12 +394,13 @@ void TrajectoryWriter::flush() {
 
 void TrajectoryWriter::finish() {
     File& f = *file_;
-    TSR_ASSERT(f.rows == f.steps.size());
+    TSR_ASSERT(f.rows > 0 && f.rows == f.steps.size());
     f.writing([&] {
         f.flush();
-        for (hdf5::Handle& slot : f.slots) slot = {};
-        if (hdf5::has_link(f.file.get(), kResume)) hdf5::remove_link(f.file.get(), kResume);
-        f.data = {};
+        const bool grows = static_cast<bool>(f.slots[0]);
+        if (grows) f.write_checkpoint();
+        f.close_datasets();
+        if (grows) hdf5::remove_link(f.file.get(), kResume);
         f.file.close();
     });
     f.lock.publish();

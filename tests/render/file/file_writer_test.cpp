@@ -14,22 +14,16 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tesserae::render {
 namespace {
 
 namespace fs = std::filesystem;
 
-class FileWriterTest : public testing::Test {
+class FileWriterTest : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "file_writer_XXXXXX").string();
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path folder_;
+    const testing::TemporaryFolder folder_{"file_writer"};
 };
 
 std::string content_of(const fs::path& file) {

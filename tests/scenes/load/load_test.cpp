@@ -193,6 +193,28 @@ TEST(LoadScene, PlacesAreThoseOfTheFile) {
         << error_of(text);
 }
 
+TEST(LoadScene, TakesEveryKeyOfPhysicsOrItsDefault) {
+    const PhysicsSettings plain = *load_text("[physics]\n").physics, defaults;
+    EXPECT_EQ(plain.gravity, defaults.gravity);
+    EXPECT_EQ(plain.duration, defaults.duration);
+    EXPECT_EQ(plain.steps_per_second, defaults.steps_per_second);
+    EXPECT_EQ(plain.iterations, defaults.iterations);
+    EXPECT_EQ(plain.substeps, defaults.substeps);
+    EXPECT_EQ(plain.solver, defaults.solver);
+    EXPECT_EQ(plain.integrator, defaults.integrator);
+    EXPECT_EQ(plain.sleeping, defaults.sleeping);
+    const char* all =
+        "[physics]\nsubsteps = 1000\nsolver = \"soft\"\nintegrator = \"euler\"\nsleeping = true\n";
+    for (const std::string& text : {std::string(all), load_text(all).effective}) {
+        const Scene scene = load_text(text);
+        EXPECT_EQ(scene.physics->substeps, 1000);
+        EXPECT_EQ(scene.physics->solver, Solver::kSoft);
+        EXPECT_EQ(scene.physics->integrator, Integrator::kEuler);
+        EXPECT_TRUE(scene.physics->sleeping);
+        EXPECT_EQ(scene.hash, load_text(all).hash);
+    }
+}
+
 TEST(LoadScene, EqualTypesAreShared) {
     const std::string a = std::string("[[body]]\n") + kSphere, b = a + "friction = 0.1\n";
     const std::string c = a + "visible = false\n";
@@ -272,20 +294,34 @@ TEST(SceneHash, IgnoresHowTheFileIsWritten) {
 TEST(SceneHash, SeesEveryValue) {
     const Scene scene = load_text(kRich);
     const auto changed = [&](const std::string& set) { return load_text(kRich, {set}); };
-    for (const char* motion :
-         {"physics.seed=1", "physics.gravity=[0,0,0,0]", "physics.duration=1",
-          "body.floor.offset=1", "body.body-1.radius=1", "body.body-1.mass=1",
-          "body.body-1.position=[0,0,0,0]", "body.body-1.rotation.xy=1",
-          "body.body-1.velocity=[0,0,0,0]", "body.body-1.friction=1", "body.body-1.restitution=1",
-          "body.body-1.fixed=[]", "lattice.rain.seed=1", "lattice.rain.jitter=0",
-          "lattice.rain.spacing=1", "lattice.rain.count=[1,1,1,1]"}) {
+    for (const char* motion : {"physics.seed=1",
+                               "physics.gravity=[0,0,0,0]",
+                               "physics.steps_per_second=1",
+                               "physics.iterations=1",
+                               "physics.substeps=2",
+                               "physics.solver=\"soft\"",
+                               "physics.sleeping=true",
+                               "physics.integrator=\"euler\"",
+                               "body.floor.offset=1",
+                               "body.body-1.radius=1",
+                               "body.body-1.mass=1",
+                               "body.body-1.position=[0,0,0,0]",
+                               "body.body-1.rotation.xy=1",
+                               "body.body-1.velocity=[0,0,0,0]",
+                               "body.body-1.friction=1",
+                               "body.body-1.restitution=1",
+                               "body.body-1.fixed=[]",
+                               "lattice.rain.seed=1",
+                               "lattice.rain.jitter=0",
+                               "lattice.rain.spacing=1",
+                               "lattice.rain.count=[1,1,1,1]"}) {
         EXPECT_NE(changed(motion).hash, scene.hash) << motion;
         EXPECT_NE(changed(motion).motion_hash, scene.motion_hash) << motion;
     }
     for (const char* picture :
-         {"scene.name=\"b\"", "body.floor.name=\"b\"", "body.floor.visible=false",
-          "render.samples=1", "camera.field_of_view=49", "light.0.color=[0,0,0]",
-          "render.exposure=0", "render.crop=[0,0,1,1]",
+         {"scene.name=\"b\"", "physics.duration=1", "body.floor.name=\"b\"",
+          "body.floor.visible=false", "render.samples=1", "camera.field_of_view=49",
+          "light.0.color=[0,0,0]", "render.exposure=0", "render.crop=[0,0,1,1]",
           "body.floor.material=\"dots \\\" \\\\ \\t ä\""}) {
         EXPECT_NE(changed(picture).hash, scene.hash) << picture;
         EXPECT_EQ(changed(picture).motion_hash, scene.motion_hash) << picture;
@@ -306,6 +342,17 @@ TEST(FirstDifference, NamesKeyAndValues) {
               "body 0.name: \"floor\" there, \"f\" here");
     EXPECT_EQ(first_difference(base, effective({"render.crop=[0, 0, 1, 1]"})),
               "render: nothing there, crop = [0, 0, 1, 1] here");
+
+    // What does not decide motion is passed over, but still names the body.
+    const auto motion = [&](const std::vector<std::string>& sets) {
+        return first_motion_difference(base, effective(sets));
+    };
+    const std::string shown = "scene.name=\"b\"", longer = "physics.duration=9";
+    EXPECT_EQ(motion({shown, longer, "render.samples=16"}), "");
+    EXPECT_EQ(motion({shown, longer, "physics.seed=9"}),
+              "physics.seed: 9223372036854775807 there, 9 here");
+    EXPECT_EQ(motion({shown, longer, "body.floor.visible=false", "body.body-1.friction=0.7"}),
+              "body 1 \"body-1\".friction: 0.1 there, 0.7 here");
 }
 
 TEST(TomlText, RealsReadBackAsTheSameBits) {

@@ -17,7 +17,7 @@ namespace tesserae::scenes::testing {
 namespace fs = std::filesystem;
 
 Outcome tesserae(const std::vector<std::string>& arguments, int signal, int milliseconds) {
-    const Folder folder(fmt::format("program-{}", static_cast<const void*>(&arguments)));
+    const Folder folder("program");
     const std::string out = folder.file("out"), err = folder.file("err");
     const pid_t child = fork();
     if (child == 0) {
@@ -47,19 +47,8 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
     return outcome;
 }
 
-Folder::Folder(const std::string& name)
-    : path_(fs::temp_directory_path() / fmt::format("tesserae-test-{}-{}", getpid(), name)) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-}
-
-Folder::~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
-
 std::string Folder::write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
+    std::ofstream(path() / name, std::ios::binary) << text;
     return file(name);
 }
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary_folder.hpp"
+
 namespace tesserae::scenes::testing {
 
 /// What a run of the program `tesserae` left.
@@ -15,19 +17,13 @@ struct Outcome {
 /// Runs the program to its end; sends `signal` after `milliseconds` if that is not 0.
 Outcome tesserae(const std::vector<std::string>& arguments, int signal = 0, int milliseconds = 0);
 
-/// A folder for one test, emptied first, removed at the end.
-class Folder {
+class Folder : public tesserae::testing::TemporaryFolder {
   public:
-    explicit Folder(const std::string& name);
-    ~Folder();
+    using TemporaryFolder::TemporaryFolder;
 
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
+    std::string file(const std::string& name) const { return (*this / name).string(); }
     /// Writes a text file into it and returns its path.
     std::string write(const std::string& name, const std::string& text) const;
-
-  private:
-    std::filesystem::path path_;
 };
 
 std::string content(const std::filesystem::path& file);

@@ -235,5 +235,43 @@ TEST(Program, InfoTellsScenesTrajectoriesAndImagesApart) {
     }
 }
 
+TEST(Program, InfoSaysHowWellATrajectoryKeepsWhatMotionKeeps) {
+    const Folder folder("diagnostics");
+    const auto scene = folder.write("fall.toml", R"([physics]
+duration = 1
+[[body]]
+shape = "hypersphere"
+radius = 0.5
+mass = 2
+position = [3, 0, 0, 0]
+angular_velocity = { zw = 6 }
+)");
+    const auto file = folder.file("fall.h5");
+    ASSERT_EQ(tesserae({"simulate", scene, "-o", file, "--store-every", "1"}).status, 0);
+    const Outcome info = tesserae({"info", file, "--json"});
+    ASSERT_EQ(info.status, 0) << info.err;
+    const auto json = nlohmann::json::parse(info.out);
+    const auto number = [&](const char* name) {
+        return std::stod(json.at(name).get<std::string>());
+    };
+    // I = m r^2 / 3, so I omega^2 / 2 = 3 J; after 1 s a fall at 10 m/s^2 has m v = 20 kg m/s, and
+    // x m v = 60 kg m^2/s about the origin.
+    EXPECT_NEAR(number("energy, first row"), 3, 1e-8);
+    EXPECT_EQ(json.at("momentum change"), "20 kg m/s at step 240");
+    EXPECT_EQ(json.at("angular momentum change"), "60 kg m^2/s at step 240");
+    // The step is exact under constant gravity: 240 roundings of 100 J.
+    EXPECT_LT(number("largest energy change"), 240 * 100 * 2.3e-16);
+    EXPECT_EQ(json.at("deepest penetration"), "0 m at step 0");
+}
+
+TEST(Program, AnImageWithoutBodiesHasNoNames) {
+    const Folder folder("nobody");
+    const auto scene = folder.write("empty.toml", "[render]\nsize = [8, 8]\n");
+    ASSERT_EQ(tesserae({"render", scene, "-o", folder.file("out")}).status, 0);
+    const Outcome info = tesserae({"info", folder.file("out/frames/empty.0000.exr"), "--json"});
+    ASSERT_EQ(info.status, 0) << info.err;
+    EXPECT_EQ(nlohmann::json::parse(info.out).at("tesserae/idNames"), "{}");
+}
+
 }  // namespace
 }  // namespace tesserae::scenes::testing

@@ -14,6 +14,7 @@
 
 #include "core/error.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -23,16 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kBodies = 5;
 /// A tree node of HDF5's default format has 64 entries: rows 65 and 122 split one.
 constexpr std::uint64_t kRows = 128;
-
-struct Folder {
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "trajectory_XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder " + name);
-        path = name;
-    }
-    ~Folder() { fs::remove_all(path); }
-    fs::path path;
-};
 
 /// Runs `work` in a child, stopped before every system call that changes a file.
 /// @return its exit status, -1 if it cannot be traced
@@ -57,7 +48,8 @@ int trace_writes(const std::function<void()>& work, const std::function<void()>&
         __ptrace_syscall_info info = {};
         ::ptrace(PTRACE_GET_SYSCALL_INFO, child, sizeof info, &info);
         const auto call = info.entry.nr;
-        if (entering && (call == SYS_pwrite64 || call == SYS_ftruncate || call == SYS_rename))
+        if (entering && (call == SYS_pwrite64 || call == SYS_ftruncate || call == SYS_rename ||
+                         call == SYS_sendfile || call == SYS_copy_file_range))
             before_write();
         entering = !entering;
     }
@@ -77,6 +69,14 @@ class SharedCount {
   private:
     volatile std::uint64_t* count_;
 };
+
+/// The scene whose trajectory has so many rows.
+TrajectoryHeader header_of(std::uint64_t rows) {
+    TrajectoryHeader header = make_header(kBodies);
+    header.source = "run " + std::string(rows, 'x');
+    header.hash = std::to_string(rows);
+    return header;
+}
 
 /// Every row that counts is right, and none of those flushed is missing.
 void expect_whole(const fs::path& file, std::uint64_t flushed) {
@@ -98,8 +98,8 @@ void expect_whole(const fs::path& file, std::uint64_t flushed) {
 
 /// A copy is continued from its last flush on.
 void expect_continued(const fs::path& file, std::uint64_t flushed) {
-    const Folder folder;
-    const fs::path path = folder.path / "copy.h5";
+    const testing::TemporaryFolder folder("kill");
+    const fs::path path = folder / "copy.h5";
     fs::copy_file(file, path.string() + ".partial");
     const TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
     ASSERT_GE(writer.rows(), flushed) << writer.note();
@@ -115,7 +115,7 @@ void expect_whole_at_every_write(const fs::path& path, const SharedCount& flushe
     int states = 0;
     const auto check = [&] {
         const std::uint64_t rows = flushed.get();
-        if (rows == 0 || !fs::exists(partial) || testing::Test::HasFailure()) return;
+        if (rows == 0 || !fs::exists(partial) || ::testing::Test::HasFailure()) return;
         ++states;
         try {
             expect_whole(partial, rows);
@@ -123,7 +123,7 @@ void expect_whole_at_every_write(const fs::path& path, const SharedCount& flushe
         } catch (const std::exception& error) {
             ADD_FAILURE() << error.what();
         }
-        if (testing::Test::HasFailure())
+        if (::testing::Test::HasFailure())
             std::cout << "at write " << states << " after " << rows << " flushed rows\n";
     };
     const int status = trace_writes(work, check);
@@ -134,8 +134,8 @@ void expect_whole_at_every_write(const fs::path& path, const SharedCount& flushe
 }
 
 TEST(TrajectoryKill, AtEveryWriteTheFileHoldsTheLastFlush) {
-    const Folder folder;
-    const fs::path path = folder.path / "film.h5";
+    const testing::TemporaryFolder folder("kill");
+    const fs::path path = folder / "film.h5";
     SharedCount flushed;
     expect_whole_at_every_write(path, flushed, [&] {
         TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
@@ -152,20 +152,96 @@ TEST(TrajectoryKill, AtEveryWriteTheFileHoldsTheLastFlush) {
 
 TEST(TrajectoryKill, AtEveryWriteOfAnInterruptedRunTheFileHoldsTheLastFlush) {
     // Each run has another text, and rows that were not flushed are cut off again.
-    const Folder folder;
-    const fs::path path = folder.path / "film.h5";
+    const testing::TemporaryFolder folder("kill");
+    const fs::path path = folder / "film.h5";
     SharedCount flushed;
     expect_whole_at_every_write(path, flushed, [&] {
         for (std::uint64_t end = 14; flushed.get() < kRows; end += 19) {
-            TrajectoryHeader header = make_header(kBodies);
-            header.source = "run " + std::string(end, 'x');
-            header.hash = std::to_string(end);
-            TrajectoryWriter writer(path, header, make_steps(kRows), false);
+            TrajectoryWriter writer(path, header_of(end), make_steps(kRows), false);
             append_rows(writer, std::min(end, kRows), kBodies);
             writer.flush();
             flushed.set(writer.rows());
             if (writer.rows() == kRows) writer.finish();
         }
+    });
+}
+
+/// A copy of the folder is continued from what is furthest in it.
+void expect_continued_for_longer(const fs::path& path, std::uint64_t rows) {
+    const testing::TemporaryFolder folder("kill");
+    const fs::path copy = folder / "copy.h5";
+    fs::copy_file(path, copy);
+    if (fs::exists(path.string() + ".partial"))
+        fs::copy_file(path.string() + ".partial", copy.string() + ".partial");
+    TrajectoryWriter writer(copy, header_of(kRows), make_steps(kRows), false);
+    ASSERT_GE(writer.rows(), rows) << writer.note();
+    append_rows(writer, kRows, kBodies);
+    writer.finish();
+    expect_whole(copy, kRows);
+}
+
+TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
+    const testing::TemporaryFolder folder("kill");
+    const fs::path path = folder / "film.h5";
+    // Each time what is there is continued, in a copy; rows 65 and 122 split a node.
+    const std::uint64_t ends[] = {3, 64, 65, 121, kRows};
+    {
+        TrajectoryWriter writer(path, header_of(ends[0]), make_steps(ends[0]), false);
+        append_rows(writer, ends[0], kBodies);
+        writer.finish();
+    }
+    SharedCount finished;
+    finished.set(ends[0]);
+    int states = 0;
+    const auto work = [&] {
+        for (std::uint64_t end : ends) {
+            if (end == ends[0]) continue;
+            TrajectoryWriter writer(path, header_of(end), make_steps(end), false);
+            append_rows(writer, end, kBodies);
+            writer.finish();
+            finished.set(end);
+        }
+    };
+    const auto check = [&] {
+        if (::testing::Test::HasFailure()) return;
+        ++states;
+        try {
+            expect_whole(path, finished.get());
+            if (states % 4 == 0) expect_continued_for_longer(path, finished.get());
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << error.what();
+        }
+        if (::testing::Test::HasFailure()) std::cout << "at write " << states << "\n";
+    };
+    const int status = trace_writes(work, check);
+    if (status == -1) GTEST_SKIP() << "processes cannot be traced here";
+    EXPECT_EQ(status, 0);
+    EXPECT_GE(states, 300);
+    expect_whole(path, kRows);
+}
+
+TEST(TrajectoryKill, AtEveryWriteOfAFileWithoutItsNameTheFileHoldsTheLastFlush) {
+    // Killed just before the rename, then wanted longer: nothing else holds its rows.
+    const testing::TemporaryFolder folder("kill");
+    const fs::path path = folder / "film.h5";
+    constexpr std::uint64_t kFinished = 50;
+    {
+        TrajectoryWriter writer(path, header_of(kFinished), make_steps(kFinished), false);
+        append_rows(writer, kFinished, kBodies);
+        writer.finish();
+    }
+    fs::rename(path, path.string() + ".partial");
+    SharedCount flushed;
+    flushed.set(kFinished);
+    expect_whole_at_every_write(path, flushed, [&] {
+        TrajectoryWriter writer(path, header_of(kRows), make_steps(kRows), false);
+        for (std::uint64_t row = kFinished + 1; row <= kRows; ++row) {
+            append_rows(writer, row, kBodies);
+            if (row > 68 && row % 8 != 0) continue;
+            writer.flush();
+            flushed.set(row);
+        }
+        writer.finish();
     });
 }
 

@@ -11,23 +11,15 @@
 
 #include "core/error.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
 
-class TrajectoryRefuse : public testing::Test {
+class TrajectoryRefuse : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "trajectory_XXXXXX").string();
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        path_ = folder_ / "film.h5";
-        partial_ = folder_ / "film.h5.partial";
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     void write_whole() {
         TrajectoryWriter writer(path_, make_header(3), make_steps(5), false);
         append_rows(writer, 5, 3);
@@ -38,7 +30,8 @@ class TrajectoryRefuse : public testing::Test {
         append_rows(writer, rows, header.bodies);
     }
 
-    fs::path folder_, path_, partial_;
+    const testing::TemporaryFolder folder_{"trajectory"};
+    const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
 
 template <class Error>
@@ -178,7 +171,8 @@ TEST_F(TrajectoryRefuse, ALeftoverOfOtherSteps) {
 
     const std::string fewer =
         error_of<InputError>([&] { TrajectoryWriter(path_, made, make_steps(7), false); });
-    EXPECT_NE(fewer.find("row 7 is of step 21, here the end"), std::string::npos) << fewer;
+    EXPECT_NE(fewer.find("goes on to step 33 in 12 rows, here to step 18 in 7"), std::string::npos)
+        << fewer;
     TrajectoryHeader every = made;
     every.store_every = 0;
     const std::string stored =

@@ -20,11 +20,18 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
     std::mt19937_64 random(row + 1);
     std::normal_distribution<double> normal;
     Row made;
-    made.facts = {3 * row,
-                  0.0125 * static_cast<double>(row),
-                  {random() % 100, normal(random)},
-                  normal(random),
-                  normal(random)};
+    StepFacts& facts = made.facts;
+    facts.step = 3 * row;
+    facts.time = 0.0125 * static_cast<double>(row);
+    facts.report.contacts = random() % 100;
+    facts.report.penetration = normal(random);
+    facts.report.mean_penetration = normal(random);
+    facts.report.residual = normal(random);
+    facts.report.asleep = random() % 100;
+    facts.kinetic_energy = normal(random);
+    facts.potential_energy = normal(random);
+    facts.momentum = {normal(random), normal(random), -0.0, normal(random)};
+    facts.angular_momentum = {normal(random), 0, normal(random), 5e-324, 1, normal(random)};
     Bodies& b = made.bodies;
     b.type.assign(bodies, 0);
     for (std::size_t i = 0; i < bodies; ++i) {
@@ -36,6 +43,10 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
         b.rotor.push_back({std::cos(angle), {0, 0, std::sin(angle), 0, 0, 0}, 0});
     }
     made.memory.time = made.facts.time;
+    for (std::size_t i = 0; i < (row % 2 == 0 ? bodies : 0); ++i) {
+        made.memory.asleep.push_back(random() % 3 == 0 ? kAwake : 0);
+        made.memory.still.push_back(normal(random));
+    }
     for (std::uint64_t i = 0; i < random() % 50; ++i)
         made.memory.impulses.push_back({1,
                                         2,

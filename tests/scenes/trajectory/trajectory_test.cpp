@@ -16,31 +16,26 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
 
-class TrajectoryTest : public testing::Test {
+class TrajectoryTest : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "trajectory_XXXXXX").string();
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder_ = name;
-        path_ = folder_ / "film.h5";
-        partial_ = folder_ / "film.h5.partial";
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     void write_whole(std::uint64_t rows, std::size_t bodies) {
+        fs::remove(path_);
         TrajectoryWriter writer(path_, make_header(bodies), make_steps(rows), false);
         append_rows(writer, rows, bodies);
         writer.finish();
     }
 
-    fs::path folder_, path_, partial_;
+    const testing::TemporaryFolder folder_{"trajectory"};
+    const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
 
 int status_of_child(const std::function<int()>& work) {
@@ -61,31 +56,6 @@ std::string error_of(const std::function<void()>& call) {
     return {};
 }
 
-/// The bytes of every dataset and the names of all objects, through HDF5's own interface.
-std::map<std::string, std::string> datasets_of(const fs::path& path) {
-    std::map<std::string, std::string> found;
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    const auto visit = [](hid_t root, const char* name, const H5L_info_t*, void* to) -> herr_t {
-        auto& all = *static_cast<std::map<std::string, std::string>*>(to);
-        const hid_t object = H5Oopen(root, name, H5P_DEFAULT);
-        std::string& bytes = all[name];
-        if (H5Iget_type(object) == H5I_DATASET) {
-            const hid_t type = H5Dget_type(object), space = H5Dget_space(object);
-            const auto points = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
-            bytes.resize(points * H5Tget_size(type));
-            if (H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
-                bytes = "unreadable";
-            H5Tclose(type);
-            H5Sclose(space);
-        }
-        H5Oclose(object);
-        return 0;
-    };
-    H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, visit, &found);
-    H5Fclose(file);
-    return found;
-}
-
 void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_t bodies) {
     const std::vector<StepFacts> facts = reader.facts();
     for (std::uint64_t i = begin; i < reader.rows(); ++i) {
@@ -103,8 +73,13 @@ void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_
         EXPECT_EQ(reader.times()[i], row.facts.time);
         EXPECT_EQ(facts[i].report.contacts, row.facts.report.contacts);
         EXPECT_EQ(facts[i].report.penetration, row.facts.report.penetration);
+        EXPECT_EQ(facts[i].report.mean_penetration, row.facts.report.mean_penetration);
+        EXPECT_EQ(facts[i].report.residual, row.facts.report.residual);
+        EXPECT_EQ(facts[i].report.asleep, row.facts.report.asleep);
         EXPECT_EQ(facts[i].kinetic_energy, row.facts.kinetic_energy);
         EXPECT_EQ(facts[i].potential_energy, row.facts.potential_energy);
+        EXPECT_EQ(facts[i].momentum, row.facts.momentum);
+        EXPECT_EQ(facts[i].angular_momentum, row.facts.angular_momentum);
     }
 }
 
@@ -150,12 +125,12 @@ TEST_F(TrajectoryTest, FollowsH5md) {
     H5Aread(attribute, H5T_NATIVE_INT, &dimension);
     H5Aclose(attribute);
     EXPECT_EQ(dimension, 4);
-    // One dataset of steps under eight names, as H5MD asks of what was stored together.
+    // One dataset of steps under thirteen names, as H5MD asks of what was stored together.
     for (const char* shared : {"step", "time"}) {
         const auto address = [&](const std::string& element) {
             H5O_info_t info;
             H5Oget_info_by_name1(file, (element + "/" + shared).c_str(), &info, H5P_DEFAULT);
-            EXPECT_EQ(info.rc, 8u);
+            EXPECT_EQ(info.rc, 13u);
             return info.addr;
         };
         EXPECT_EQ(address("/particles/bodies/rotor"), address("/observables/contacts"));
@@ -186,6 +161,8 @@ TEST_F(TrajectoryTest, AnInterruptedRunEndsWithTheSameBytes) {
             ASSERT_TRUE(resume.has_value());
             EXPECT_EQ(resume->step, row.facts.step);
             EXPECT_EQ(resume->memory.time, row.memory.time);
+            EXPECT_EQ(resume->memory.asleep, row.memory.asleep);
+            EXPECT_EQ(resume->memory.still, row.memory.still);
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i) {
                 EXPECT_EQ(resume->memory.impulses[i].normal, row.memory.impulses[i].normal);
@@ -351,8 +328,9 @@ TEST_F(TrajectoryTest, RefusesFilesThatAreNoTrajectories) {
     fs::remove(path_);
     EXPECT_NE(error_of<InputError>([&] { TrajectoryReader reader(path_); }).find("No such file"),
               std::string::npos);
-    EXPECT_NE(error_of<InputError>([&] { TrajectoryReader reader(folder_); }).find("not a file"),
-              std::string::npos);
+    EXPECT_NE(
+        error_of<InputError>([&] { TrajectoryReader reader(folder_.path()); }).find("not a file"),
+        std::string::npos);
 }
 
 // HDF5 itself may fail on damaged structures, beyond what the reader's checks can see: a process

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "scenes/trajectory/trajectory.hpp"
+
+namespace tesserae::scenes {
+
+/// The bytes of every dataset of a trajectory and the names of all objects, through HDF5's own
+/// interface.
+inline std::map<std::string, std::string> datasets_of(const std::filesystem::path& path) {
+    // Starts HDF5 the way the program needs it, which has to be before its first use.
+    static_cast<void>(TrajectoryReader(path));
+    std::map<std::string, std::string> found;
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const auto visit = [](hid_t root, const char* name, const H5L_info_t*, void* to) -> herr_t {
+        auto& all = *static_cast<std::map<std::string, std::string>*>(to);
+        const hid_t object = H5Oopen(root, name, H5P_DEFAULT);
+        std::string& bytes = all[name];
+        if (H5Iget_type(object) == H5I_DATASET) {
+            const hid_t type = H5Dget_type(object), space = H5Dget_space(object);
+            const auto points = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+            bytes.resize(points * H5Tget_size(type));
+            if (H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
+                bytes = "unreadable";
+            H5Tclose(type);
+            H5Sclose(space);
+        }
+        H5Oclose(object);
+        return 0;
+    };
+    H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, visit, &found);
+    H5Fclose(file);
+    return found;
+}
+
+/// The names of the datasets that differ, or that only one of two files has; empty if none.
+inline std::string different_datasets(const std::filesystem::path& a,
+                                      const std::filesystem::path& b) {
+    const auto in_a = datasets_of(a), in_b = datasets_of(b);
+    std::string names;
+    for (const auto& [name, bytes] : in_a)
+        if (!in_b.contains(name) || in_b.at(name) != bytes) names += name + " ";
+    for (const auto& [name, bytes] : in_b)
+        if (!in_a.contains(name)) names += name + " ";
+    return in_a.empty() ? a.string() + " has none" : names;
+}
+
+}  // namespace tesserae::scenes
