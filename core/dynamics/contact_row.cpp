@@ -45,7 +45,9 @@ void set_masses(const Simulation& simulation, const StepData& step, ContactRow& 
     for (int i = 0; i < 4; ++i) K.col(i) = both(P.col(i));
     const Mat4 tangent = P * K;
     const double scale = tangent.trace() / 3;
-    if (scale > rounding) row.tangent_mass = (tangent + scale * n * n.transpose()).inverse();
+    if (!(scale > rounding)) return;
+    row.tangent_mass = (tangent + scale * n * n.transpose()).inverse();
+    row.slide_mass = 1 / tangent.norm();
 }
 
 /// The velocity along the normal that leaves the surface at e times the speed v with which the

@@ -61,6 +61,30 @@ TEST(Sliding, CoversTheRightDistanceToSecondOrder) {
     }
 }
 
+TEST(Sliding, BrakesABoxOfAnyYawAgainstItsVelocity) {
+    // It lies on a cell of eight corners, whose response to an impulse is not the same in all
+    // tangent directions. Friction is mu m g against the velocity; box and path do not turn.
+    const double v0 = 3, mu = 0.5, t = 0.5;
+    const Vec4 direction{0.48, 0, 0.6, 0.64};
+    BodyType box = box_type({0.5, 0.2, 0.3, 0.4}, 2);
+    box.friction = mu;
+    for (double yaw : {0.0, 0.6}) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, mu));
+        const Rotor rotor = exp(Bivector{0, -0.5 * yaw, 0, 0, 0, 0});
+        add(bodies, box, {0, 0.1, 0, 0}, v0 * direction, {}, rotor);
+        PhysicsSettings settings;
+        settings.gravity = kDown;
+        settings.iterations = 300;  // until nothing changes
+        World world(bodies, settings);
+        run(world, t, 240);
+        const double travel = v0 * t - 0.5 * mu * 10 * t * t;
+        const Vec4 end = Vec4{0, 0.1, 0, 0} + travel * direction;
+        EXPECT_LT((world.bodies().position[1] - end).norm(), 1e-9) << yaw;
+        EXPECT_LT(norm(world.bodies().angular_velocity[1]), 1e-9) << yaw;
+    }
+}
+
 TEST(Incline, LetsASphereRollOrSlipAtTheExactAcceleration) {
     for (double degrees : {5.0, 20.0, 40.0, 60.0})
         for (double mu : {0.05, 0.2, 0.6}) {
