@@ -187,12 +187,12 @@ struct StepBeforeSolver {
         begin_step(simulation, step, kStep);
         const Range all{0, heap.bodies.size()};
         advance_first_half(simulation, step, all);
-        integrate_velocities(simulation, step, all);
         update_bounds(simulation, step, all);
         parallel::SortAndSweep().find_pairs(simulation, step);
         find_contacts(simulation, step, {0, step.pairs.size()}, step.contacts);
         begin_contacts(step);
         recall_impulses(simulation, step, {0, step.contacts.size()});
+        integrate_velocities(simulation, step, all);
         IslandBuilder().build(simulation, step);
     }
 

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/dynamics/solver.hpp"
-
 namespace tesserae::parallel {
 namespace {
 
@@ -23,12 +21,13 @@ struct IslandGraph::Graph {
     Graph()
         : node(graph, tbb::flow::unlimited, [this](const Message& message) {
               for (std::size_t i = message.begin; i < message.end; ++i)
-                  solve_island(*simulation, *step, order[i]);
+                  work(*simulation, *step, order[i]);
               return tbb::flow::continue_msg();
           }) {}
 
     const Simulation* simulation = nullptr;
     StepData* step = nullptr;
+    Work* work = nullptr;
     std::vector<std::uint32_t> order;  ///< islands, by falling size, then number
     tbb::flow::graph graph;
     tbb::flow::function_node<Message> node;
@@ -37,8 +36,9 @@ struct IslandGraph::Graph {
 IslandGraph::IslandGraph() : graph_(std::make_unique<Graph>()) {}
 IslandGraph::~IslandGraph() = default;
 
-void IslandGraph::solve(const Simulation& simulation, StepData& step) {
+void IslandGraph::run(const Simulation& simulation, StepData& step, Work& work) {
     Graph& g = *graph_;
+    g.work = &work;
     g.simulation = &simulation;
     g.step = &step;
     const std::vector<std::uint32_t>& first = step.islands.first;

@@ -18,8 +18,10 @@ class IslandGraph {
     IslandGraph(const IslandGraph&) = delete;
     IslandGraph& operator=(const IslandGraph&) = delete;
 
-    /// core's solve_island() for all islands of the step.
-    void solve(const Simulation& simulation, StepData& step);
+    /// Of one island: core's solve_island() or relax_island().
+    using Work = void(const Simulation&, StepData&, std::size_t island);
+    /// Does the work for all islands of the step.
+    void run(const Simulation& simulation, StepData& step, Work& work);
 
   private:
     struct Graph;

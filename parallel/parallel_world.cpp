@@ -5,6 +5,7 @@
 #include "core/dynamics/islands.hpp"
 #include "core/dynamics/motion.hpp"
 #include "core/dynamics/pairs.hpp"
+#include "core/dynamics/sleeping.hpp"
 #include "core/dynamics/solver.hpp"
 #include "parallel/chunks.hpp"
 #include "parallel/island_graph.hpp"
@@ -36,14 +37,16 @@ StepReport ParallelWorld::step(double dt) {
     begin_step(simulation_, step_, dt);
     // A graph works in the arena that it is built in, and the first step is the first to know it.
     if (!stages_) stages_ = std::make_unique<Stages>();
-    advance_first_half();
-    integrate_velocities();
-    update_bounds();
-    find_pairs();
-    find_contacts();
-    build_islands();
-    solve_islands();
-    advance_second_half();
+    for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
+        advance_first_half();
+        find_pairs();
+        find_contacts();
+        integrate_velocities();
+        build_islands();
+        solve_islands();
+        advance_second_half();
+        relax_islands();
+    }
     return finish_step();
 }
 
@@ -53,39 +56,49 @@ void ParallelWorld::advance_first_half() {
     require_finite(simulation_, step_);
 }
 
+void ParallelWorld::find_pairs() {
+    const std::size_t count = simulation_.bodies.size();
+    if (step_.substep > 0 && !outgrows_bounds(simulation_, step_, {0, count})) return;
+    for_each_range(count, kBodyGrain,
+                   [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
+    stages_->sort_and_sweep.find_pairs(simulation_, step_);
+}
+
+void ParallelWorld::find_contacts() {
+    for (bool look = true; look;) {
+        stages_->contacts.collect(
+            step_.pairs.size(), kPairGrain,
+            [&](Range pairs, std::vector<Contact>& list) {
+                tesserae::find_contacts(simulation_, step_, pairs, list);
+            },
+            step_.contacts);
+        look = wake_touched(step_);
+        if (look) stages_->sort_and_sweep.find_pairs(simulation_, step_);
+    }
+    begin_contacts(step_);
+    for_each_range(step_.contacts.size(), kContactGrain,
+                   [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
+}
+
 void ParallelWorld::integrate_velocities() {
     for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::integrate_velocities(simulation_, step_, bodies);
     });
 }
 
-void ParallelWorld::update_bounds() {
-    for_each_range(simulation_.bodies.size(), kBodyGrain,
-                   [&](Range bodies) { tesserae::update_bounds(simulation_, step_, bodies); });
-}
-
-void ParallelWorld::find_pairs() { stages_->sort_and_sweep.find_pairs(simulation_, step_); }
-
-void ParallelWorld::find_contacts() {
-    stages_->contacts.collect(
-        step_.pairs.size(), kPairGrain,
-        [&](Range pairs, std::vector<Contact>& list) {
-            tesserae::find_contacts(simulation_, step_, pairs, list);
-        },
-        step_.contacts);
-    begin_contacts(step_);
-    for_each_range(step_.contacts.size(), kContactGrain,
-                   [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
-}
-
 void ParallelWorld::build_islands() { stages_->island_builder.build(simulation_, step_); }
 
-void ParallelWorld::solve_islands() { stages_->island_graph.solve(simulation_, step_); }
+void ParallelWorld::solve_islands() { stages_->island_graph.run(simulation_, step_, solve_island); }
 
 void ParallelWorld::advance_second_half() {
     for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::advance_second_half(simulation_, step_, bodies);
     });
+}
+
+void ParallelWorld::relax_islands() {
+    stages_->island_graph.run(simulation_, step_, relax_island);
+    end_substep(simulation_, step_);
 }
 
 StepReport ParallelWorld::finish_step() {

@@ -28,13 +28,13 @@ class ParallelWorld {
     struct Stages;
 
     void advance_first_half();
-    void integrate_velocities();
-    void update_bounds();
     void find_pairs();
     void find_contacts();
+    void integrate_velocities();
     void build_islands();
     void solve_islands();
     void advance_second_half();
+    void relax_islands();
     StepReport finish_step();
 
     Simulation simulation_;

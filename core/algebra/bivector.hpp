@@ -47,6 +47,17 @@ inline double wedge(const Bivector& a, const Bivector& b) {
     return a.xy * b.zw + a.zw * b.xy - a.xz * b.yw - a.yw * b.xz + a.xw * b.yz + a.yz * b.xw;
 }
 
+/// (a b - b a) / 2, a bivector: how a turning frame changes b, dB/dt = half_commutator(omega, B) in
+/// a body that turns with omega (seen from it).
+inline Bivector half_commutator(const Bivector& a, const Bivector& b) {
+    return {a.yz * b.xz - a.xz * b.yz + a.yw * b.xw - a.xw * b.yw,
+            a.xy * b.yz - a.yz * b.xy + a.zw * b.xw - a.xw * b.zw,
+            a.xy * b.yw - a.yw * b.xy + a.xz * b.zw - a.zw * b.xz,
+            a.xz * b.xy - a.xy * b.xz + a.zw * b.yw - a.yw * b.zw,
+            a.xw * b.xy - a.xy * b.xw + a.yz * b.zw - a.zw * b.yz,
+            a.xw * b.xz - a.xz * b.xw + a.yw * b.yz - a.yz * b.yw};
+}
+
 /// B xyzw: the plane orthogonal to B. dual(dual(B)) = B.
 inline Bivector dual(const Bivector& b) { return {-b.zw, b.yw, -b.yz, -b.xw, b.xz, -b.xy}; }
 

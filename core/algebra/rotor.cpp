@@ -69,16 +69,8 @@ Mat4 minus_matrix(const Quaternion& q) {
 Rotor operator*(const Rotor& a, const Rotor& b) {
     // B1 B2 = -B1.B2 + (half the commutator) + B1 ^ B2, and I commutes with all of it, I I = 1.
     const Bivector &u = a.b, &v = b.b;
-    const Bivector commutator = {
-        u.yz * v.xz - u.xz * v.yz + u.yw * v.xw - u.xw * v.yw,
-        u.xy * v.yz - u.yz * v.xy + u.zw * v.xw - u.xw * v.zw,
-        u.xy * v.yw - u.yw * v.xy + u.xz * v.zw - u.zw * v.xz,
-        u.xz * v.xy - u.xy * v.xz + u.zw * v.yw - u.yw * v.zw,
-        u.xw * v.xy - u.xy * v.xw + u.yz * v.zw - u.zw * v.yz,
-        u.xw * v.xz - u.xz * v.xw + u.yw * v.yz - u.yz * v.yw,
-    };
     return {a.s * b.s - dot(u, v) + a.p * b.p,
-            a.s * v + b.s * u + commutator + a.p * dual(v) + b.p * dual(u),
+            a.s * v + b.s * u + half_commutator(u, v) + a.p * dual(v) + b.p * dual(u),
             a.s * b.p + a.p * b.s + wedge(u, v)};
 }
 

@@ -44,6 +44,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.contacts.resize(contacts.size());
     for (std::uint32_t i = 0; i < contacts.size(); ++i)
         islands.contacts[islands.first[number_[root_of(member(contacts[i]))]]++] = i;
+    step.residual.resize(count);
     // Filling moved each start to its island's end: shift them back.
     std::shift_right(islands.first.begin(), islands.first.end(), 1);
     islands.first.front() = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/dynamics/bodies.hpp"
@@ -19,13 +20,23 @@ struct ContactImpulse {
 /// Saved with a trajectory so that a resumed run continues bit for bit.
 struct StepMemory {
     std::vector<ContactImpulse> impulses;  ///< ascending (a, b, feature)
-    double time = 0;  ///< of all steps so far [s]; changes no result, messages name it
+    /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
+    /// in, or kAwake.
+    std::vector<BodyId> asleep;
+    std::vector<double> still;  ///< how long every body has hardly moved [s], or empty
+    double time = 0;            ///< of all steps so far [s]; changes no result, messages name it
 };
+constexpr BodyId kAwake = std::numeric_limits<BodyId>::max();
 
-/// What a step found.
+/// What a step found, in the middle of its last sub-step. Contacts of bodies that sleep count, as
+/// they were when they fell asleep, but their overlap does not.
 struct StepReport {
-    std::uint64_t contacts = 0;  ///< contact points that touch or overlap
-    double penetration = 0;      ///< deepest overlap found, in the step's middle [m], >= 0
+    std::uint64_t contacts = 0;   ///< contact points that touch or overlap
+    double penetration = 0;       ///< deepest overlap [m], >= 0
+    double mean_penetration = 0;  ///< overlap of those that touch or overlap, on average [m], >= 0
+    double residual = 0;  ///< largest change of a contact's normal velocity that the solver still
+                          ///< made in its last iteration [m/s]
+    std::uint64_t asleep = 0;  ///< bodies
 };
 
 }  // namespace tesserae

@@ -4,16 +4,17 @@
 
 namespace tesserae {
 
-/// Whether the narrow phase has to look at bodies a < b: contacts can move at least one, and where
-/// one can be within the step the other can be too. Every way of finding pairs decides by this.
+/// Whether the narrow phase has to look at bodies a < b: contacts can move at least one, at least
+/// one is awake or driven, and where one can be within the step the other can be too. Every way of
+/// finding pairs decides by this.
 bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
 
 /// step.pairs by testing every two bodies: the reference for faster ways.
 void find_pairs(const Simulation& simulation, StepData& step);
 
 /// Narrow phase of step.pairs in the range: appends their contacts to a list. Reported are points
-/// that can close within one step at the present relative velocity, and those that are within the
-/// allowed overlap of touching.
+/// that can close within one sub-step at the present relative velocity, and those that are within
+/// the allowed overlap of touching.
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                    std::vector<Contact>& list);
 

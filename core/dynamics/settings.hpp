@@ -6,10 +6,16 @@
 
 namespace tesserae {
 
-/// How orientation is advanced over a step.
+/// How a body turns freely; its angular momentum stays in both.
 enum class Integrator {
-    kEuler,     ///< angular velocity of the step's start
-    kMidpoint,  ///< angular velocity at the middle, from the angular momentum held constant
+    kEuler,     ///< with the angular velocity of the step's start
+    kMidpoint,  ///< with that of the middle, implicitly: keeps the energy too
+};
+
+/// How overlap is removed. Both have the same rows, friction, restitution and warm starting.
+enum class Solver {
+    kImpulse,  ///< a velocity that closes a part of it, which stays as momentum
+    kSoft,     ///< a damped spring, whose velocity is taken back after the bodies have moved by it
 };
 
 /// The [physics] table.
@@ -17,8 +23,11 @@ struct PhysicsSettings {
     Vec4 gravity = {0, -10, 0, 0};  ///< [m/s^2]
     double duration = 1;            ///< [s]
     double steps_per_second = 240;  ///< [1/s]
-    int iterations = 10;            ///< of the contact solver, a step
-    Integrator integrator = Integrator::kEuler;
+    int substeps = 1;     ///< of equal length, a step: pairs are looked for once, contacts in each
+    int iterations = 10;  ///< of the contact solver, a sub-step
+    Solver solver = Solver::kImpulse;
+    Integrator integrator = Integrator::kMidpoint;
+    bool sleeping = false;  ///< islands at rest are left out until something touches them
     std::uint64_t seed = 1;
 };
 

@@ -4,22 +4,20 @@
 
 namespace tesserae {
 
-/// Part of an overlap that a step removes (f in the bias -(f/h) min(0, s + a)), usual 0.2. Towards
-/// 1 stacks jump, towards 0 they sink.
-constexpr double kBiasPart = 0.2;
-
-/// Approach speed [m/s] above which restitution acts, that of a fall from 3 mm. Lower, resting
-/// bodies rattle; higher, bouncing ends too soon.
-constexpr double kRestitutionThreshold = 0.25;
-
-/// step.impulses of the contacts in the range: what the last step's memory holds for the same
+/// step.impulses of the contacts in the range: what the last sub-step left for the same
 /// (a, b, feature), else zero.
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts);
 
 /// Solves the contacts of one island by sequential impulses, accumulated and clamped, warm
-/// started: changes the velocities of its movable bodies and leaves its contacts' impulses in
-/// step.impulses. Touches nothing of another island. Source: E. Catto, "Iterative dynamics with
-/// temporal coherence", 2005; friction is a block of three directions instead of separate ones.
+/// started: changes the velocities of its movable bodies. Touches nothing of another island.
+/// Source: E. Catto, "Iterative dynamics with temporal coherence", 2005; friction is a block of
+/// three directions instead of separate ones.
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
+
+/// Once the island's bodies have moved by the velocities that solve_island() gave them: with
+/// Solver::kSoft takes back the part of the velocities that removed overlap (M. Macklin et al.,
+/// "Small steps in physics simulation", 2019; E. Catto, "Solver2D", 2024). Leaves the island's
+/// impulses in step.impulses.
+void relax_island(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

@@ -5,7 +5,32 @@
 #include <limits>
 #include <utility>
 
+#include "core/dynamics/sleeping.hpp"
+
 namespace tesserae {
+namespace {
+
+StepReport report_of(const StepData& step) {
+    StepReport report;
+    double sum = 0;
+    for (std::size_t i = 0; i < step.contacts.size(); ++i) {
+        const double overlap = std::max(0.0, -step.contacts[i].separation);
+        if (step.contacts[i].separation > 0 && !(step.impulses[i].normal > 0)) continue;
+        ++report.contacts;
+        sum += overlap;
+        report.penetration = std::max(report.penetration, overlap);
+    }
+    if (report.contacts > 0) report.mean_penetration = sum / static_cast<double>(report.contacts);
+    for (const double residual : step.residual)
+        report.residual = std::max(report.residual, residual);
+    if (step.asleep.empty()) return report;
+    for (const ContactImpulse& impulse : step.recalled)
+        if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) ++report.contacts;
+    for (BodyId id = 0; id < step.asleep.size(); ++id) report.asleep += is_asleep(step, id);
+    return report;
+}
+
+}  // namespace
 
 LeftFiniteRange::LeftFiniteRange(BodyId id, double t)
     : RunError(fmt::format("body {} left the finite range in the step that ends at {} s; the last "
@@ -21,6 +46,8 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
         throw InputError(fmt::format("bodies: the arrays of {} bodies differ in length", count));
     if (count >= std::numeric_limits<BodyId>::max())
         throw InputError(fmt::format("{} bodies: at most 2^32 - 2 can be numbered", count));
+    if (settings.substeps < 1)
+        throw InputError(fmt::format("{} sub-steps: must be at least 1", settings.substeps));
     for (std::uint32_t type : bodies.type)
         if (type >= bodies.types.size())
             throw InputError(fmt::format("bodies: type {} of {}", type, bodies.types.size()));
@@ -37,6 +64,10 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
         throw InputError(fmt::format("time step = {} s: must be finite and > 0", dt));
     const std::size_t count = simulation.bodies.size();
     step.dt = dt;
+    step.h = dt / simulation.settings.substeps;
+    step.substep = 0;
+    step.asleep = simulation.memory.asleep;
+    if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);
     step.position.resize(count);
     step.rotor.resize(count);
     step.velocity.resize(count);
@@ -47,6 +78,7 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
 void begin_contacts(StepData& step) {
     step.rows.resize(step.contacts.size());
     step.impulses.resize(step.contacts.size());
+    step.residual.clear();
 }
 
 void require_finite(const Simulation& simulation, const StepData& step) {
@@ -60,22 +92,32 @@ void require_finite(const Simulation& simulation, const StepData& step) {
     }
 }
 
+void end_substep(const Simulation& simulation, StepData& step) {
+    std::vector<ContactImpulse> next;
+    next.reserve(step.impulses.size());
+    for (const ContactImpulse& impulse : step.impulses)
+        if (impulse.normal > 0) next.push_back(impulse);
+    if (!step.asleep.empty()) {
+        const auto own = static_cast<std::ptrdiff_t>(next.size());
+        for (const ContactImpulse& impulse : last_impulses(simulation, step))
+            if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) next.push_back(impulse);
+        std::inplace_merge(next.begin(), next.begin() + own, next.end(),
+                           [](const auto& i, const auto& j) { return key_of(i) < key_of(j); });
+    }
+    step.recalled = std::move(next);
+}
+
 StepReport commit_step(Simulation& simulation, StepData& step) {
+    const StepReport report = report_of(step);
+    StepMemory& memory = simulation.memory;
+    memory.time += step.dt;
+    std::swap(memory.impulses, step.recalled);
+    if (simulation.settings.sleeping) fall_asleep(simulation, step);
+    std::swap(memory.asleep, step.asleep);
     std::swap(simulation.bodies.position, step.position);
     std::swap(simulation.bodies.rotor, step.rotor);
     std::swap(simulation.bodies.velocity, step.velocity);
     std::swap(simulation.bodies.angular_velocity, step.angular_velocity);
-
-    StepReport report;
-    simulation.memory.time += step.dt;
-    simulation.memory.impulses.clear();
-    for (std::size_t i = 0; i < step.contacts.size(); ++i) {
-        const double separation = step.contacts[i].separation;
-        const bool pushed = step.impulses[i].normal > 0;
-        if (pushed) simulation.memory.impulses.push_back(step.impulses[i]);
-        if (pushed || separation <= 0) ++report.contacts;
-        report.penetration = std::max(report.penetration, -separation);
-    }
     return report;
 }
 

@@ -22,13 +22,16 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings);
 /// @throws InputError   dt is not finite or not > 0
 void begin_step(const Simulation& simulation, StepData& step, double dt);
 
-/// Sizes the step's arrays of contacts, once these are known.
+/// Sizes the sub-step's arrays of contacts, once these are known.
 void begin_contacts(StepData& step);
 
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);
 
-/// Makes the step's result the present state, and its impulses the memory.
+/// Keeps the sub-step's impulses for the next one, beside those of bodies that sleep.
+void end_substep(const Simulation& simulation, StepData& step);
+
+/// Makes the step's result the present state, and what the next one needs of it the memory.
 StepReport commit_step(Simulation& simulation, StepData& step);
 
 }  // namespace tesserae

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "core/contact/contact.hpp"
@@ -17,8 +18,8 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// A cube about a body's centre that holds all that it can reach in the step. Infinite if
-/// unbounded.
+/// A cube about a body's centre that holds all that it can reach in the rest of the step. Infinite
+/// if unbounded.
 struct Bounds {
     Vec4 lower, upper;  ///< world [m]
 };
@@ -40,14 +41,22 @@ struct Islands {
     std::size_t size() const { return first.size() - 1; }
 };
 
+/// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
+/// p <- max(0, keep p + mass (target - v)).
+struct NormalPass {
+    double mass = 0;    ///< [kg]; the inverse of the response if rigid, less if soft
+    double keep = 1;    ///< 1 if rigid; a soft contact yields, and p with it
+    double target = 0;  ///< [m/s]
+};
+
 /// A contact as the solver sees it. Impulses act on b, their opposites on a.
 struct ContactRow {
     Vec4 normal;                ///< unit, from a to b
     Vec4 r_a, r_b;              ///< from the centres to the contact point [m]
     Mat4 tangent_mass;          ///< inverse of the response in the three tangent directions [kg]
     Vec4 tangent_impulse;       ///< [N s], orthogonal to the normal
-    double normal_mass = 0;     ///< inverse of the response along the normal [kg]
-    double target = 0;          ///< least velocity along the normal [m/s]
+    NormalPass solve;           ///< overlap is removed
+    NormalPass relax;           ///< the velocity that removed it is taken back
     double normal_impulse = 0;  ///< [N s], >= 0
     double friction = 0;        ///< coefficient
     BodyId a = 0, b = 0;
@@ -65,7 +74,9 @@ struct Simulation {
 
 /// What the stages of one step hand on. Nothing in it survives the step, its memory does.
 struct StepData {
-    double dt = 0;  ///< [s]
+    double dt = 0;    ///< [s]
+    double h = 0;     ///< length of a sub-step [s]
+    int substep = 0;  ///< 0 to settings.substeps - 1
 
     std::vector<Vec4> position;  ///< of every body, on its way from the last state to the next
     std::vector<Rotor> rotor;
@@ -77,7 +88,34 @@ struct StepData {
     std::vector<Contact> contacts;  ///< ascending (a, b, feature)
     Islands islands;
     std::vector<ContactRow> rows;          ///< in the order of islands.contacts
-    std::vector<ContactImpulse> impulses;  ///< of every contact, last step's at first
+    std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
+    std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
+    std::vector<double> residual;          ///< of every island [m/s]
+    std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
 };
+
+/// Contacts and their impulses are in ascending order of this.
+template <class ContactOrImpulse>
+auto key_of(const ContactOrImpulse& c) {
+    return std::tuple(c.a, c.b, c.feature);
+}
+
+/// What the sub-step before this one left.
+inline const std::vector<ContactImpulse>& last_impulses(const Simulation& simulation,
+                                                        const StepData& step) {
+    return step.substep == 0 ? simulation.memory.impulses : step.recalled;
+}
+
+inline bool is_asleep(const StepData& step, BodyId id) {
+    return !step.asleep.empty() && step.asleep[id] != kAwake;
+}
+
+/// Moves at a velocity of its own, which contacts do not change.
+inline bool is_driven(const Simulation& simulation, BodyId id) {
+    const Bodies& bodies = simulation.bodies;
+    const BodyType& type = bodies.type_of(id);
+    return (type.fixed_position && bodies.velocity[id] != Vec4::Zero()) ||
+           (type.fixed_rotation && !(bodies.angular_velocity[id] == Bivector{}));
+}
 
 }  // namespace tesserae

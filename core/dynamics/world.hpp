@@ -26,13 +26,13 @@ class World {
 
   private:
     void advance_first_half();
-    void integrate_velocities();
-    void update_bounds();
     void find_pairs();
     void find_contacts();
+    void integrate_velocities();
     void build_islands();
     void solve_islands();
     void advance_second_half();
+    void relax_islands();
     StepReport finish_step();
 
     Range all_bodies() const { return {0, simulation_.bodies.size()}; }

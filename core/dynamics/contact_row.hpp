@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/dynamics/step_data.hpp"
+
+namespace tesserae {
+
+/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
+/// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
+constexpr double kBiasPart = 0.2;
+
+/// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
+/// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.
+constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
+
+/// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second: so
+/// that those that start deep inside each other do not explode. Less, and a heavy load sinks in.
+constexpr double kLargestPush = 4;
+
+/// Approach speed above which restitution acts, as a multiple of what gravity adds in a sub-step:
+/// slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle; higher, bouncing
+/// ends too soon. Where there is no gravity every approach bounces.
+constexpr double kRestitutionKicks = 4;
+
+/// The contact in the middle of the sub-step. Needs the velocities before any impulse of the
+/// sub-step and after gravity.
+/// @param impulse   where to start from
+ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact,
+                    const ContactImpulse& impulse);
+
+/// Of b against a at the contact point [m/s].
+inline Vec4 relative_velocity(const StepData& step, const ContactRow& row) {
+    return step.velocity[row.b] + velocity_at(step.angular_velocity[row.b], row.r_b) -
+           step.velocity[row.a] - velocity_at(step.angular_velocity[row.a], row.r_a);
+}
+
+/// The nearest impulse that friction allows.
+inline Vec4 clamped_to_ball(const Vec4& impulse, double radius) {
+    const double length = impulse.norm();
+    return length > radius ? Vec4(radius / length * impulse) : impulse;
+}
+
+}  // namespace tesserae

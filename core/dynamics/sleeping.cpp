@@ -1,0 +1,85 @@
+#include "core/dynamics/sleeping.hpp"
+
+#include <algorithm>
+
+namespace tesserae {
+namespace {
+
+bool is_still(const Simulation& simulation, const StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    const double speed = step.velocity[id].norm() + type.radius * norm(step.angular_velocity[id]);
+    return speed < kStill / kSlop * type.slop;
+}
+
+/// Of every island: its lowest movable body if it may fall asleep, else kAwake.
+std::vector<BodyId> islands_at_rest(const Simulation& simulation, const StepData& step) {
+    std::vector<BodyId> lowest(step.islands.size(), kAwake);
+    for (std::size_t island = 0; island < lowest.size(); ++island) {
+        bool rests = true;
+        for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
+             ++i) {
+            const Contact& contact = step.contacts[step.islands.contacts[i]];
+            for (const BodyId id : {contact.a, contact.b}) {
+                rests = rests && !is_driven(simulation, id);
+                if (!simulation.type_of(id).movable) continue;
+                rests = rests && simulation.memory.still[id] >= kTimeToSleep;
+                lowest[island] = std::min(lowest[island], id);
+            }
+        }
+        if (!rests) lowest[island] = kAwake;
+    }
+    return lowest;
+}
+
+}  // namespace
+
+bool wake_touched(StepData& step) {
+    if (step.asleep.empty()) return false;
+    std::vector<BodyId> woken;
+    for (const Contact& contact : step.contacts)
+        for (const BodyId id : {contact.a, contact.b})
+            if (is_asleep(step, id)) woken.push_back(step.asleep[id]);
+    if (woken.empty()) return false;
+    std::sort(woken.begin(), woken.end());
+    for (BodyId& island : step.asleep)
+        if (island != kAwake && std::binary_search(woken.begin(), woken.end(), island))
+            island = kAwake;
+    return true;
+}
+
+void fall_asleep(Simulation& simulation, StepData& step) {
+    const std::size_t count = simulation.bodies.size();
+    std::vector<double>& still = simulation.memory.still;
+    const std::vector<BodyId>& before = simulation.memory.asleep;
+    still.resize(count, 0);
+    for (BodyId id = 0; id < count; ++id) {
+        if (is_asleep(step, id)) continue;
+        const bool woke = !before.empty() && before[id] != kAwake;
+        still[id] = is_still(simulation, step, id) && !woke ? still[id] + step.dt : 0;
+    }
+
+    // A body without contacts is an island of its own.
+    const std::vector<BodyId> lowest = islands_at_rest(simulation, step);
+    std::vector<BodyId> next(count);
+    for (BodyId id = 0; id < count; ++id) {
+        const bool rests = simulation.type_of(id).movable && !is_driven(simulation, id) &&
+                           still[id] >= kTimeToSleep;
+        next[id] = rests ? id : kAwake;
+    }
+    for (std::size_t island = 0; island < lowest.size(); ++island)
+        for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
+             ++i) {
+            const Contact& contact = step.contacts[step.islands.contacts[i]];
+            for (const BodyId id : {contact.a, contact.b})
+                if (simulation.type_of(id).movable) next[id] = lowest[island];
+        }
+
+    for (BodyId id = 0; id < count; ++id) {
+        if (is_asleep(step, id) || next[id] == kAwake) continue;
+        step.asleep[id] = next[id];
+        step.velocity[id].setZero();
+        step.angular_velocity[id] = {};
+    }
+}
+
+}  // namespace tesserae
