@@ -84,9 +84,9 @@ void print(const Row& row) {
     const double median = quantile(row.seconds, 0.5);
     const double spread = (quantile(row.seconds, 0.75) - quantile(row.seconds, 0.25)) / median;
     for (const Error& error : row.errors)
-        fmt::print("{},{},\"{}\",{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
-                   error.quantity, error.unit, name_of(k.integrator), k.iterations,
-                   k.steps_per_second, error.value, scale * median, 100 * spread,
+        fmt::print("{},{},{},{},{},{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
+                   error.quantity, error.unit, name_of(k.integrator), name_of(k.solver), k.substeps,
+                   k.iterations, k.steps_per_second, error.value, scale * median, 100 * spread,
                    row.seconds.size());
 }
 
@@ -107,7 +107,8 @@ void run(std::span<char*> names) {
             if (static_cast<int>(row.seconds.size()) < row.repeats) repeat(row);
 
     fmt::print(
-        "experiment,quantity,unit,integrator,iterations,steps_per_second,error,us_per_s,"
+        "experiment,quantity,unit,integrator,solver,substeps,iterations,steps_per_second,error,us_"
+        "per_s,"
         "spread_percent,repeats\n");
     for (const Row& row : rows) print(row);
 }

@@ -26,5 +26,6 @@ std::vector<Listed> all_experiments();
 std::vector<Knobs> knobs_of(Kind kind);
 
 const char* name_of(Integrator integrator);
+const char* name_of(Solver solver);
 
 }  // namespace tesserae::bench

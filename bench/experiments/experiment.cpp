@@ -11,7 +11,9 @@ PhysicsSettings settings_of(double duration, const Knobs& knobs, const Vec4& gra
     settings.gravity = gravity;
     settings.duration = duration;
     settings.steps_per_second = knobs.steps_per_second;
+    settings.substeps = knobs.substeps;
     settings.iterations = knobs.iterations;
+    settings.solver = knobs.solver;
     settings.integrator = knobs.integrator;
     return settings;
 }

@@ -19,7 +19,9 @@ inline const Vec4 kDown{0, -kGravity, 0, 0};
 /// What is varied to trade error for run time.
 struct Knobs {
     Integrator integrator = PhysicsSettings{}.integrator;
-    int iterations = PhysicsSettings{}.iterations;
+    Solver solver = PhysicsSettings{}.solver;
+    int substeps = PhysicsSettings{}.substeps;      ///< a step
+    int iterations = PhysicsSettings{}.iterations;  ///< a sub-step
     int steps_per_second = 240;
 
     friend bool operator==(const Knobs&, const Knobs&) = default;

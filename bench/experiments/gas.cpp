@@ -128,11 +128,15 @@ Experiment gas(const Knobs& knobs) {
                     const double u = v * v / (2 * kT);
                     return 1 - (1 + u) * std::exp(-u);
                 });
-                return {{"energy", "relative", std::abs(end / start - 1)},
-                        {"pressure", "relative",
-                         std::abs(compressibility / exact_compressibility() - 1)},
-                        {"components against Gauss", "Kolmogorov-Smirnov, 0.87 expected", gauss},
-                        {"speeds against Maxwell", "Kolmogorov-Smirnov, 0.87 expected", maxwell}};
+                std::vector<Error> errors = {
+                    {"energy", "relative", std::abs(end / start - 1)},
+                    {"components against Gauss", "sqrt(n) D; 0.87 expected", gauss},
+                    {"speeds against Maxwell", "sqrt(n) D; 0.87 expected", maxwell}};
+                // The world remembers the impulses of a step's last sub-step only.
+                if (settings.substeps == 1)
+                    errors.push_back({"pressure", "relative",
+                                      std::abs(compressibility / exact_compressibility() - 1)});
+                return errors;
             },
             true};
 }

@@ -146,8 +146,8 @@ Experiment column_of_spheres(const Knobs& knobs) {
                     const double top = trial.bodies().position[kCount][1];
                     overlap = std::max(overlap, std::abs((2 * kCount - 1) * kRadius - top));
                 });
-                const double force =
-                    trial.memory().impulses.at(0).normal * settings.steps_per_second;
+                const double impulse = trial.memory().impulses.at(0).normal;  // of one sub-step
+                const double force = impulse * settings.substeps * settings.steps_per_second;
                 return {{"force on the floor", "relative",
                          std::abs(force / (kCount * kMass * kGravity) - 1)},
                         {"height of the top", "m", overlap}};
