@@ -69,7 +69,8 @@ void set_targets(const Simulation& simulation, double h, double s, ContactRow& r
         row.solve.target = row.relax.target = s > 0 ? -s / h : 0;
         return;
     }
-    const double depth = -(s + slop), fastest = kLargestPush / kSlop * slop;
+    const double depth = -(s + slop);
+    const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
     if (simulation.settings.solver == Solver::kImpulse) {
         row.solve.target = std::min(fastest, kBiasPart / h * depth);
         return;
@@ -93,7 +94,15 @@ void add_rebound(const Simulation& simulation, const StepData& step, double s, C
     const double slowest = a.falls || b.falls ? kRestitutionKicks * h * gravity.norm() : 0;
     const double g = (a.falls - b.falls) * row.normal.dot(gravity);
     const double v1 = -row.normal.dot(relative_velocity(step, row)), v0 = v1 - h * g;
-    if (!(v0 > slowest) || s > h * v1) return;
+    if (s > h * v1) {
+        // Do not meet in this sub-step unless another contact drives them together. Stopping them
+        // at each other's surface would lose that energy: they may overlap, by half of the smaller
+        // one at most, and bounce in the next sub-step.
+        const double half_size = std::min(a.slop, b.slop) / kSlop;
+        row.solve.target = row.relax.target = -(s + 0.5 * half_size) / h;
+        return;
+    }
+    if (!(v0 > slowest)) return;
     const double rebound = rebound_velocity(e, v0, g, s, h);
     row.relax.target = std::max(row.relax.target, rebound);
     if (rebound > row.solve.target) row.solve = row.relax;

@@ -12,8 +12,9 @@ constexpr double kBiasPart = 0.2;
 /// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.
 constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
 
-/// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second: so
-/// that those that start deep inside each other do not explode. Less, and a heavy load sinks in.
+/// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second (and
+/// what gravity adds in a sub-step): so that those that start deep inside each other do not
+/// explode. Less, and a heavy load sinks in.
 constexpr double kLargestPush = 4;
 
 /// Approach speed above which restitution acts, as a multiple of what gravity adds in a sub-step:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace tesserae {
 namespace {
@@ -84,6 +85,24 @@ class MiddleMomentum {
     double half_, enough_;
 };
 
+/// By how much Cayley's map turns too little, as a turn about the momentum, which that does not
+/// change: in each of the two quaternions, atan|u| instead of |u|. So that steady rotations are
+/// exact.
+Bivector missing_turn(const Bivector& half_turn, const Bivector& momentum) {
+    Bivector missing;
+    for (const double sign : {1.0, -1.0}) {
+        // The part in one quaternion, whose norm is by the root of two larger than the bivector's.
+        const auto part = [&](const Bivector& b) { return 0.5 * (b + sign * dual(b)); };
+        const Bivector u = part(half_turn), P = part(momentum);
+        const double squared = dot(u, u) * dot(P, P);
+        if (!(squared > 0)) continue;
+        const double angle = std::numbers::sqrt2 * norm(u);
+        const double cosine = dot(u, P) / std::sqrt(squared);
+        missing += (angle - std::atan(angle)) * cosine / (std::numbers::sqrt2 * norm(P)) * P;
+    }
+    return missing;
+}
+
 void turn_by_midpoint(const TypeProperties& type, double h, Rotor& rotor, Bivector& omega) {
     const Bivector omega_body = rotate(reverse(rotor), omega);
     const double pieces = std::clamp(std::ceil(h * norm(omega) / kLargestAngle), 1.0, kMostPieces);
@@ -94,8 +113,9 @@ void turn_by_midpoint(const TypeProperties& type, double h, Rotor& rotor, Bivect
         // With D = 1 + h/2 omega made a unit rotor, D P0 D~ = 2 P - P0 (Cayley's map in each of the
         // two quaternions), so that R D~ keeps the momentum in the world.
         const Bivector half_turn = (0.5 * piece) * scaled(type.inverse_inertia, middle);
-        rotor = projected_to_spin4(rotor * Rotor{1, -half_turn, 0});
         P = middle + (middle - P);
+        rotor =
+            projected_to_spin4(rotor * Rotor{1, -half_turn, 0} * exp(-missing_turn(half_turn, P)));
     }
     omega = rotate(rotor, scaled(type.inverse_inertia, P));
 }

@@ -10,21 +10,6 @@ namespace {
 
 using namespace tesserae::testing;
 
-/// The heap of spheres with every third one a box and every third a capsule, turning.
-Bodies mixed_heap() {
-    Bodies bodies = heap_of_spheres(90, 3);
-    for (BodyId id = 0; id < bodies.size(); ++id) {
-        BodyType& type = bodies.types[bodies.type[id]];
-        if (!is_bounded(type.shape)) continue;
-        const double r = std::get<Hypersphere>(type.shape).radius;
-        if (id % 3 == 0) type.shape = Hyperbox{{r, 1.2 * r, 1.1 * r, 0.8 * r}};
-        if (id % 3 == 1) type.shape = Hypercapsule{0.5 * r, r};
-        bodies.rotor[id] = exp({0.1 * id, 0.2, 0.05 * id, -0.1, 0.3, 0.02 * id});
-        bodies.angular_velocity[id] = {1, -0.5, 0.3, 0.2, -1, 0.7};
-    }
-    return bodies;
-}
-
 TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
     constexpr int kSteps = 200;
     constexpr double kStep = 1.0 / 240;
@@ -55,6 +40,56 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
         EXPECT_TRUE(same_bits(world.bodies(), end)) << count;
         EXPECT_TRUE(same_values(world.memory(), serial.memory())) << count;
     }
+}
+
+void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, int steps,
+                        const World& serial) {
+    for (int count : {1, 2, 3}) {
+        Threads threads(count);
+        ParallelWorld world(bodies, settings);
+        threads.run([&] {
+            for (int i = 0; i < steps; ++i) world.step(1.0 / 80);
+        });
+        EXPECT_TRUE(same_bits(world.bodies(), serial.bodies())) << count;
+        EXPECT_TRUE(same_values(world.memory(), serial.memory())) << count;
+    }
+}
+
+PhysicsSettings soft() {
+    PhysicsSettings settings;
+    settings.solver = Solver::kSoft;
+    settings.substeps = 3;
+    settings.iterations = 2;
+    return settings;
+}
+
+TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSoftSubsteps) {
+    World serial(mixed_heap(), soft());
+    for (int i = 0; i < 100; ++i) serial.step(1.0 / 80);
+    expect_serial_bits(mixed_heap(), soft(), 100, serial);
+}
+
+/// Stacks of two boxes fall asleep, and spheres thrown along w wake some of them.
+TEST(SleepingStacks, HaveTheBitsOfTheSerialWorld) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (int i = 0; i < 50; ++i)
+        add(bodies, box_type(Vec4::Ones(), 10),
+            {1.5 * (i / 2 % 5), 0.5 + i % 2, 1.5 * (i / 10), 0});
+    for (int i = 0; i < 3; ++i)
+        add(bodies, sphere_type(0.4, 20), {1.5 * i, 8, 1.5 * i, -6}, {0, 0, 0, 5});
+    PhysicsSettings settings = soft();
+    settings.sleeping = true;
+    World serial(bodies, settings);
+    std::uint64_t most = 0, woken = 0;
+    for (int i = 0; i < 120; ++i) {
+        const std::uint64_t asleep = serial.step(1.0 / 80).asleep;
+        most = std::max(most, asleep);
+        woken = std::max(woken, most - asleep);
+    }
+    EXPECT_EQ(most, 50u);
+    EXPECT_GE(woken, 6u);
+    expect_serial_bits(bodies, settings, 120, serial);
 }
 
 }  // namespace

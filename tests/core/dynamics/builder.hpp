@@ -83,6 +83,21 @@ inline Bodies heap_of_spheres(int count, int across = 4) {
     return bodies;
 }
 
+/// The heap of spheres with every third one a box and every third a capsule, turning.
+inline Bodies mixed_heap(int count = 90, int across = 3) {
+    Bodies bodies = heap_of_spheres(count, across);
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        BodyType& type = bodies.types[bodies.type[id]];
+        if (!is_bounded(type.shape)) continue;
+        const double r = std::get<Hypersphere>(type.shape).radius;
+        if (id % 3 == 0) type.shape = Hyperbox{{r, 1.2 * r, 1.1 * r, 0.8 * r}};
+        if (id % 3 == 1) type.shape = Hypercapsule{0.5 * r, r};
+        bodies.rotor[id] = exp({0.1 * id, 0.2, 0.05 * id, -0.1, 0.3, 0.02 * id});
+        bodies.angular_velocity[id] = {1, -0.5, 0.3, 0.2, -1, 0.7};
+    }
+    return bodies;
+}
+
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() &&
@@ -96,7 +111,8 @@ inline bool same_bits(const Bodies& a, const Bodies& b) {
 }
 
 inline bool same_values(const StepMemory& a, const StepMemory& b) {
-    if (a.time != b.time || a.impulses.size() != b.impulses.size()) return false;
+    if (a.time != b.time || a.asleep != b.asleep || a.still != b.still) return false;
+    if (a.impulses.size() != b.impulses.size()) return false;
     for (std::size_t i = 0; i < a.impulses.size(); ++i) {
         const ContactImpulse &p = a.impulses[i], &q = b.impulses[i];
         if (p.a != q.a || p.b != q.b || p.feature != q.feature || p.normal != q.normal ||

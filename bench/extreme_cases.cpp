@@ -1,0 +1,230 @@
+#include "bench/extreme_cases.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/bodies.hpp"
+#include "core/dynamics/energy.hpp"
+#include "parallel/parallel_world.hpp"
+#include "parallel/threads.hpp"
+
+namespace tesserae::bench {
+namespace {
+
+using Measurements = std::vector<Measurement>;
+
+BodyType box_type(const Vec4& size, double mass) {
+    BodyType type;
+    type.shape = Hyperbox{size};
+    type.mass = mass;
+    type.friction = 0.5;
+    return type;
+}
+
+Bodies floor_and(double restitution = 0) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5, restitution), Vec4::Zero());
+    return bodies;
+}
+
+/// What happens to bodies that should stay where they are put.
+struct Stay {
+    double overlap = 0;  ///< deepest of all steps [m]
+    double moved = 0;    ///< of any centre, at the end [m]
+    double fastest = 0;  ///< of all steps [m/s]
+    double last = 0;     ///< fastest at the end [m/s]
+};
+
+template <class AnyWorld>
+Stay watch(AnyWorld& world, double seconds, double steps_per_second) {
+    const std::vector<Vec4> start = world.bodies().position;
+    Stay stay;
+    const long steps = std::lround(seconds * steps_per_second);
+    for (long i = 0; i < steps; ++i) {
+        stay.overlap = std::max(stay.overlap, world.step(1 / steps_per_second).penetration);
+        stay.last = 0;
+        for (const Vec4& v : world.bodies().velocity) stay.last = std::max(stay.last, v.norm());
+        stay.fastest = std::max(stay.fastest, stay.last);
+    }
+    for (std::size_t i = 0; i < start.size(); ++i)
+        stay.moved = std::max(stay.moved, (world.bodies().position[i] - start[i]).norm());
+    return stay;
+}
+
+Measurements rows_of(const Stay& stay, double size) {
+    return {{"deepest overlap", "of the least size", stay.overlap / size},
+            {"moved at the end", "of the least size", stay.moved / size},
+            {"fastest", "m/s", stay.fastest},
+            {"fastest at the end", "m/s", stay.last}};
+}
+
+ExtremeCase staying(std::string name, Bodies bodies, double size, double seconds,
+                    double steps_per_second = 240, double gravity = 10) {
+    return {std::move(name), [=](PhysicsSettings settings) {
+                settings.gravity = {0, -gravity, 0, 0};
+                World world(bodies, settings);
+                return rows_of(watch(world, seconds, steps_per_second), size);
+            }};
+}
+
+/// Unit boxes on each other, their masses from the ground up.
+Bodies tower(const std::vector<double>& masses, const Vec4& place = Vec4::Zero()) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), place[1], 0.5, 0), Vec4::Zero());
+    double y = 0.5;
+    for (const double mass : masses)
+        add(bodies, box_type(Vec4::Ones(), mass), place + Vec4(0, y++, 0, 0));
+    return bodies;
+}
+
+Bodies pyramid(int rows) {
+    Bodies bodies = floor_and();
+    for (int row = 0; row < rows; ++row)
+        for (int i = 0; i < rows - row; ++i)
+            add(bodies, box_type(Vec4::Ones(), 1000),
+                {1.05 * (i - 0.5 * (rows - row - 1)), 0.5 + row, 0, 0});
+    return bodies;
+}
+
+/// Spheres of 1 mm, 0.1, 10 and 1000 m in diameter, beside each other, and two of 1 m on the last.
+Bodies mixed_sizes() {
+    Bodies bodies = floor_and();
+    double x = 0;
+    for (const double radius : {0.0005, 0.05, 5.0, 500.0}) {
+        x += 1.5 * radius;
+        add(bodies, sphere_type(radius, 1000 * std::pow(radius, 4), 0.5, 0), {x, radius, 0, 0});
+        x += 1.5 * radius;
+    }
+    add(bodies, sphere_type(0.5, 60, 0.5, 0), {x - 750, 1000.5, 0, 0});
+    return bodies;
+}
+
+Bodies deep_boxes() {
+    Bodies bodies = floor_and();
+    for (int i = 0; i < 4; ++i)
+        add(bodies, box_type(Vec4::Ones(), 1000), {0.1 * i, 0.5 + 0.3 * i, 0.05 * i, 0});
+    return bodies;
+}
+
+Bodies deep_spheres() {
+    Bodies bodies = floor_and();
+    for (int i = 0; i < 8; ++i)
+        add(bodies, sphere_type(0.5, 1000, 0.5, 0), {0.01 * i, 0.5 + 0.01 * i, 0.005 * (i % 3), 0});
+    return bodies;
+}
+
+Bodies long_capsule() {
+    Bodies bodies = floor_and();
+    BodyType type;
+    type.shape = Hypercapsule{0.01, 200};
+    type.mass = 10;
+    type.friction = 0.5;
+    const BodyId id = add(bodies, type, {0, 0.01, 0, 0});
+    bodies.rotor[id] = exp(Bivector{0.25 * kPi, 0, 0, 0, 0, 0});  // lies along x
+    return bodies;
+}
+
+/// Turns a box freely and tells how well its energy is kept.
+ExtremeCase spinning(std::string name, const Vec4& size, const Bivector& omega, double seconds) {
+    return {std::move(name), [=](PhysicsSettings settings) -> Measurements {
+                settings.gravity.setZero();
+                Bodies bodies;
+                add(bodies, box_type(size, 1), Vec4::Zero(), Vec4::Zero(), omega);
+                World world(bodies, settings);
+                const double start = kinetic_energy(bodies);
+                double worst = 0;
+                for (long i = 0; i < std::lround(240 * seconds); ++i) {
+                    world.step(1.0 / 240);
+                    worst = std::max(worst, std::abs(kinetic_energy(world.bodies()) / start - 1));
+                }
+                return {{"largest change of energy", "relative", worst}};
+            }};
+}
+
+/// Forty spheres in a closed box of six planes, e = 1: a hundred thousand steps.
+ExtremeCase bouncing() {
+    return {"restitution 1, 10^5 steps", [](PhysicsSettings settings) -> Measurements {
+                settings.gravity.setZero();
+                Bodies bodies;
+                for (int axis = 0; axis < 4; ++axis)
+                    for (const double side : {-1.0, 1.0})
+                        add(bodies, plane_type(side * Vec4::Unit(axis), -2, 0, 1), Vec4::Zero());
+                std::mt19937_64 engine(3);
+                std::uniform_real_distribution<> along(-2, 2);
+                for (int i = 0; i < 40; ++i) {
+                    const int cell[] = {i % 3, i / 3 % 3, i / 9 % 3, i / 27 % 3};
+                    Vec4 x, v;
+                    for (int k = 0; k < 4; ++k) x[k] = 1.2 * (cell[k] - 1), v[k] = along(engine);
+                    add(bodies, sphere_type(0.3, 1, 0, 1), x, v);
+                }
+                World world(bodies, settings);
+                const double start = kinetic_energy(bodies);
+                double worst = 0;
+                for (int i = 0; i < 100000; ++i) {
+                    world.step(1.0 / 240);
+                    worst = std::max(worst, std::abs(kinetic_energy(world.bodies()) / start - 1));
+                }
+                return {{"largest change of energy", "relative", worst}};
+            }};
+}
+
+/// 10 x 10 x 10 x 10 spheres between walls, put down touching, 60 s.
+ExtremeCase resting_spheres() {
+    return {"10^4 spheres at rest for 60 s", [](PhysicsSettings settings) {
+                Bodies bodies = floor_and();
+                for (const int axis : {0, 2, 3})
+                    for (const double side : {-1.0, 1.0})
+                        add(bodies, plane_type(side * Vec4::Unit(axis), -5, 0.5, 0), Vec4::Zero());
+                bodies.types.push_back(sphere_type(0.5, 1, 0.5, 0));
+                for (int i = 0; i < 10000; ++i)
+                    add(bodies, static_cast<std::uint32_t>(bodies.types.size() - 1),
+                        {i % 10 - 4.5, i / 1000 + 0.5, i / 10 % 10 - 4.5, i / 100 % 10 - 4.5});
+                parallel::Threads threads(parallel::granted_cores());
+                Measurements rows;
+                threads.run([&] {
+                    parallel::ParallelWorld world(bodies, settings);
+                    rows = rows_of(watch(world, 60, 60), 1);
+                });
+                return rows;
+            }};
+}
+
+std::vector<ExtremeCase> rotations() {
+    return {spinning("box 1000:30:1:1 about a middle axis, 10 s", {1000, 30, 1, 1.1},
+                     {0.01, 3, 0.001, 0.02, 0.001, 0.001}, 10),
+            spinning("box at 1000 rad/s, 10 s", {1, 0.7, 0.4, 0.2}, {900, -300, 200, 100, -50, 20},
+                     10)};
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> extreme_cases(bool with_long) {
+    const std::vector<double> ten(10, 1000.0);
+    std::vector<ExtremeCase> cases;
+    for (const double ratio : {1e2, 1e3, 1e6}) {
+        cases.push_back(staying(fmt::format("two boxes, the upper {:g} times heavier", ratio),
+                                tower({1, ratio}), 1, 4));
+        cases.push_back(staying(fmt::format("two boxes, the lower {:g} times heavier", ratio),
+                                tower({ratio, 1}), 1, 4));
+    }
+    cases.push_back(
+        staying("tower of 40 boxes, 10 s", tower(std::vector<double>(40, 1000.0)), 1, 10));
+    cases.push_back(staying("pyramid of 55 boxes, 10 s", pyramid(10), 1, 10));
+    cases.push_back(staying("spheres of 1 mm to 1 km, 4 s", mixed_sizes(), 0.001, 4));
+    for (const double rate : {30.0, 60.0, 120.0, 2000.0})
+        cases.push_back(staying(fmt::format("tower of 10 boxes, steps of 1/{:g} s, 4 s", rate),
+                                tower(ten), 1, 4, rate));
+    cases.push_back(
+        staying("tower of 10 boxes, gravity 10^4 m/s^2, 4 s", tower(ten), 1, 4, 240, 1e4));
+    cases.push_back(staying("tower of 10 boxes, 10^5 m from the origin, 4 s",
+                            tower(ten, {1e5, -1e5, 1e5, 1e5}), 1, 4));
+    cases.push_back(staying("4 boxes deep in each other, 4 s", deep_boxes(), 1, 4));
+    cases.push_back(staying("8 spheres deep in each other, 4 s", deep_spheres(), 1, 4));
+    cases.push_back(staying("capsule 10^4 times as long as wide, 4 s", long_capsule(), 0.02, 4));
+    for (ExtremeCase& rotation : rotations()) cases.push_back(std::move(rotation));
+    cases.push_back(bouncing());
+    if (with_long) cases.push_back(resting_spheres());
+    return cases;
+}
+
+}  // namespace tesserae::bench

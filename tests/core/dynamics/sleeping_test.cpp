@@ -1,0 +1,135 @@
+#include "core/dynamics/sleeping.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+constexpr double kStep = 1.0 / 240;
+
+PhysicsSettings sleepy() {
+    PhysicsSettings settings;
+    settings.sleeping = true;
+    return settings;
+}
+
+/// A floor, a stack of three boxes, and another far away.
+Bodies two_stacks() {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (const double x : {0.0, 10.0})
+        for (int i = 0; i < 3; ++i) add(bodies, box_type(Vec4::Ones(), 10), {x, 0.5 + i, 0, 0});
+    return bodies;
+}
+
+void run(World& world, int steps) {
+    for (int i = 0; i < steps; ++i) world.step(kStep);
+}
+
+TEST(Sleeping, StacksAtRestFallAsleepAndStayWhereTheyAre) {
+    World world(two_stacks(), sleepy());
+    run(world, 240);
+    const std::vector<BodyId> expected{kAwake, 1, 1, 1, 4, 4, 4};
+    EXPECT_EQ(world.memory().asleep, expected);
+    const Bodies before = world.bodies();
+    const std::size_t impulses = world.memory().impulses.size();
+    const StepReport report = world.step(kStep);
+    EXPECT_TRUE(same_bits(world.bodies(), before));
+    EXPECT_EQ(world.memory().impulses.size(), impulses);
+    EXPECT_EQ(report.asleep, 6u);
+    EXPECT_EQ(report.contacts, impulses);
+    for (BodyId id = 1; id < 7; ++id) EXPECT_EQ(before.velocity[id], Vec4::Zero());
+}
+
+TEST(Sleeping, IsOffByDefault) {
+    World world(two_stacks(), PhysicsSettings{});
+    run(world, 240);
+    EXPECT_TRUE(world.memory().asleep.empty());
+    EXPECT_EQ(world.step(kStep).asleep, 0u);
+}
+
+TEST(Sleeping, AHitWakesTheWholeStackAndNoOther) {
+    Bodies bodies = two_stacks();
+    // Arrives at the lowest box of the first stack after some 1.2 s, from the fourth direction.
+    add(bodies, sphere_type(0.3, 5, 0), {0, 0.5, 0, -7.2}, {0, 0, 0, 5});
+    PhysicsSettings settings = sleepy();
+    settings.gravity = {0, -1e-3, 0, 0};  // hardly falls on its way
+    World world(bodies, settings), sleepless(bodies, [&] {
+        PhysicsSettings other = settings;
+        other.sleeping = false;
+        return other;
+    }());
+    bool slept = false;
+    for (int i = 0; i < 360; ++i) {
+        world.step(kStep);
+        sleepless.step(kStep);
+        slept = slept || world.memory().asleep[3] == 1;
+    }
+    EXPECT_TRUE(slept);
+    EXPECT_EQ(world.memory().asleep,
+              (std::vector<BodyId>{kAwake, kAwake, kAwake, kAwake, 4, 4, 4, kAwake}));
+    // Pushed on in the step of the hit as if it had never slept, but for what it crept meanwhile.
+    for (const BodyId id : {1u, 7u}) {
+        EXPECT_LT((world.bodies().velocity[id] - sleepless.bodies().velocity[id]).norm(), 1e-3);
+        EXPECT_LT((world.bodies().position[id] - sleepless.bodies().position[id]).norm(), 1e-3);
+    }
+    EXPECT_GT(world.bodies().velocity[1][3], 0.1);
+}
+
+TEST(Sleeping, NothingSleepsOnWhatIsDriven) {
+    Bodies bodies;
+    BodyType belt = box_type({40, 1, 40, 40});
+    belt.friction = 0.5;
+    belt.fixed_position = belt.fixed_rotation = true;
+    add(bodies, belt, {0, -0.5, 0, 0}, {1e-4, 0, 0, 0});
+    add(bodies, box_type(Vec4::Ones(), 10), {0, 0.5, 0, 0});
+    World world(bodies, sleepy());
+    run(world, 480);
+    EXPECT_EQ(world.memory().asleep[1], kAwake);
+    EXPECT_NEAR(world.bodies().velocity[1][0], 1e-4, 1e-9);
+}
+
+TEST(Sleeping, AClosingWallWakesWhatItTouches) {
+    Bodies bodies = two_stacks();
+    BodyType wall = box_type({1, 4, 4, 4});
+    wall.fixed_position = wall.fixed_rotation = true;
+    add(bodies, wall, {-3, 2.5, 0, 0}, {1, 0, 0, 0});
+    World world(bodies, sleepy());
+    run(world, 600);  // the wall's face comes from -2.5 and would be at 0, the boxes' were at -0.5
+    for (BodyId id = 1; id <= 3; ++id) EXPECT_GT(world.bodies().position[id][0], 0.45) << id;
+    EXPECT_EQ(world.memory().asleep[4], 4u);
+}
+
+TEST(Sleeping, ABodyAtItsHighestPointStaysAwake) {
+    Bodies bodies;
+    add(bodies, sphere_type(0.5), Vec4::Zero(), {0, 2, 0, 0});
+    World world(bodies, sleepy());
+    for (int i = 0; i < 240; ++i) {
+        world.step(kStep);
+        ASSERT_EQ(world.memory().asleep[0], kAwake);
+    }
+    EXPECT_NEAR(world.bodies().position[0][1], 2 - 5, 1e-12);
+}
+
+TEST(Sleeping, ContinuesBitForBitFromItsBodiesAndMemory) {
+    Bodies bodies = two_stacks();
+    add(bodies, sphere_type(0.3, 5, 0.2), {0.1, 14, 0.1, 0.1});
+    for (const int before : {60, 200, 380}) {
+        World world(bodies, sleepy());
+        run(world, before);
+        World resumed(world.bodies(), sleepy());
+        resumed.memory() = world.memory();
+        run(world, 200);
+        run(resumed, 200);
+        EXPECT_TRUE(same_bits(world.bodies(), resumed.bodies())) << before;
+        EXPECT_TRUE(same_values(world.memory(), resumed.memory())) << before;
+    }
+}
+
+}  // namespace
+}  // namespace tesserae

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+TEST(Substeps, GiveTheBitsOfShorterSteps) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
+        PhysicsSettings settings;
+        settings.solver = solver;
+        settings.iterations = 4;
+        World fine(mixed_heap(), settings);
+        settings.substeps = 4;
+        World coarse(mixed_heap(), settings);
+        // A quarter of 2^-6 is exact, so that both make the same sub-steps.
+        for (int i = 0; i < 60; ++i) {
+            const StepReport report = coarse.step(1.0 / 64);
+            StepReport expected;
+            for (int k = 0; k < 4; ++k) expected = fine.step(1.0 / 256);
+            ASSERT_EQ(report.contacts, expected.contacts) << i;
+            ASSERT_EQ(report.penetration, expected.penetration) << i;
+        }
+        EXPECT_TRUE(same_bits(coarse.bodies(), fine.bodies()));
+        EXPECT_TRUE(same_values(coarse.memory(), fine.memory()));
+    }
+}
+
+/// Struck in the first of 8 sub-steps by a sphere at 100 m/s, the middle one flies off to the last
+/// within the step, far outside the bounds that it had at rest.
+TEST(Substeps, SeeWhatAContactMadeFast) {
+    Bodies bodies;
+    for (const double x : {-0.25, 0.0, 1.2}) add(bodies, sphere_type(0.1, 1, 0, 1), {x, 0, 0, 0});
+    bodies.velocity[0] = {100, 0, 0, 0};
+    PhysicsSettings settings;
+    settings.gravity.setZero();
+    settings.substeps = 8;
+    World world(bodies, settings);
+    for (int i = 0; i < 3; ++i) world.step(1.0 / 60);
+    // Equal masses, e = 1: each stops and hands its velocity on.
+    for (const BodyId id : {0u, 1u}) EXPECT_LT(world.bodies().velocity[id].norm(), 1e-11);
+    EXPECT_NEAR(world.bodies().velocity[2][0], 100, 1e-11);
+}
+
+/// A sphere of radius 0.1 m at 200 m/s, 60 steps a second: 3.3 m a step against a wall of 0.2 m.
+TEST(Substeps, ABulletDoesNotPassAThinWall) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
+        for (const double restitution : {0.0, 0.5})
+            for (int start = 0; start < 50; ++start)
+                for (const Vec4& aside : {Vec4(0, 0, 0, 0), Vec4(0, 0.5, -0.4, 0.7)}) {
+                    Bodies bodies;
+                    BodyType wall = box_type({0.2, 60, 60, 60});
+                    wall.fixed_position = wall.fixed_rotation = true;
+                    wall.restitution = restitution;
+                    add(bodies, wall);
+                    const Vec4 direction = (Vec4::UnitX() + aside).normalized();
+                    add(bodies, sphere_type(0.1, 1, 0.3), -(5 + 0.1 * start) * direction,
+                        200 * direction);
+                    PhysicsSettings settings;
+                    settings.solver = solver;
+                    World world(bodies, settings);
+                    for (int i = 0; i < 10; ++i) {
+                        world.step(1.0 / 60);
+                        // In front of the wall, whose face is at -0.1, but for the slop.
+                        ASSERT_LT(world.bodies().position[1][0], -0.2 + 0.001)
+                            << start << " " << aside.transpose();
+                    }
+                }
+}
+
+TEST(Substeps, MustBeAtLeastOne) {
+    PhysicsSettings settings;
+    settings.substeps = 0;
+    EXPECT_THROW(World(Bodies{}, settings), InputError);
+}
+
+}  // namespace
+}  // namespace tesserae
