@@ -14,6 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from PIL import Image
 
 # Errors below this are sums of rounded steps: they say nothing about an order, and no less is drawn.
@@ -120,6 +121,9 @@ def plot(name, quantities, path):
         axes.set_ylabel(f"error [{unit}]")
         axes.set_xlabel("processor time of one simulated second [µs]")
         axes.grid(True, which="major", lw=0.3)
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{t:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     figure.suptitle(name.replace("_", " "))
     figure.tight_layout(rect=(0, 1 / height, 1, 1))
     handles, labels = grid.flat[0].get_legend_handles_labels()
@@ -207,13 +211,17 @@ def report_ways(head, tree, folder):
         axes.loglog([r[2] for r in own], [r[3] for r in own], label=label_of(way), **style_of(way))
         axes.annotate(f"{own[-1][1]}", own[-1][2:], fontsize=7, xytext=(4, -3),
                       textcoords="offset points")
-    axes.loglog([r[2] for r in front], [r[3] for r in front], color="gold", lw=7, alpha=0.5,
-                zorder=0, solid_capstyle="round", label="Pareto front")
+    axes.step([r[2] for r in front], [r[3] for r in front], where="post", color="gold", lw=6,
+              alpha=0.5, zorder=0, label="Pareto front")
     axes.set_xlabel("run time over the default's (impulse, 1 x 10, 240 steps a second)")
     axes.set_ylabel("error over the default's")
     axes.set_title(f"Geometric means over {count} experiments; the number is the most steps a second",
                    fontsize=10)
     axes.grid(True, which="both", lw=0.2)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
     axes.legend(fontsize=8, title="solver, sub-steps x iterations", title_fontsize=8)
     save(figure, f"{folder}/pareto.png")
 

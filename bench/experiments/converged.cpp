@@ -8,7 +8,7 @@
 namespace tesserae::bench {
 namespace {
 
-constexpr int kFineSteps = 3840;  ///< sixteen times the usual 240 a second
+constexpr int kFineSteps = 7680;  ///< 32 times the usual 240 a second
 constexpr int kFineIterations = 60;
 
 /// Root mean square distance of the bounded bodies' centres [m].
@@ -85,7 +85,7 @@ Experiment stack_of_boxes(const Knobs& knobs) {
 
 /// Spheres and boxes in turn, in layers of eight, above a floor between walls.
 Experiment mixed_pile(const Knobs& knobs) {
-    constexpr double kDuration = 0.5;
+    constexpr double kDuration = 0.25;
     static const Bodies bodies = [] {
         Bodies b = floor_of(0.5, 0);
         for (int axis : {0, 2, 3})
