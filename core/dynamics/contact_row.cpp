@@ -12,41 +12,39 @@ namespace {
 /// can move (a sphere whose position is fixed, pushed through its centre).
 constexpr double kNoResponse = 1e-9;
 
-/// A body of a row, as the solver reads it.
-struct Side {
-    const TypeProperties& type;
-    const Rotor& rotor;
-    const Vec4& r;  ///< from the centre to the contact point
+/// Change of velocity at an offset r of a body by an impulse there.
+Vec4 response(const Simulation& simulation, const StepData& step, BodyId id, const Vec4& r,
+              const Vec4& impulse) {
+    return simulation.type_of(id).inverse_mass * impulse +
+           velocity_at(angular_response(simulation, step, id, wedge(r, impulse)), r);
+}
 
-    /// Change of velocity at the contact point by an impulse there.
-    Vec4 response(const Vec4& impulse) const {
-        return type.inverse_mass * impulse +
-               velocity_at(angular_response(type, rotor, wedge(r, impulse)), r);
-    }
-    double greatest_response() const {
-        const Bivector& i = type.inverse_inertia;
-        const double turn = std::max({i.xy, i.xz, i.xw, i.yz, i.yw, i.zw});
-        return type.inverse_mass + turn * type.radius * type.radius;
-    }
-};
+double greatest_response(const TypeProperties& type) {
+    const Bivector& i = type.inverse_inertia;
+    const double turn = std::max({i.xy, i.xz, i.xw, i.yz, i.yw, i.zw});
+    return type.inverse_mass + turn * type.radius * type.radius;
+}
 
-/// The responses of the two bodies at a contact and their inverses.
+/// The inverses of the responses of both bodies together, along the normal and across it.
 void set_masses(const Simulation& simulation, const StepData& step, ContactRow& row) {
-    const Side a{simulation.type_of(row.a), step.rotor[row.a], row.r_a};
-    const Side b{simulation.type_of(row.b), step.rotor[row.b], row.r_b};
-    Mat4 K;
-    for (int i = 0; i < 4; ++i) K.col(i) = a.response(Vec4::Unit(i)) + b.response(Vec4::Unit(i));
-    const double rounding = kNoResponse * (a.greatest_response() + b.greatest_response());
-
+    const auto both = [&](const Vec4& impulse) -> Vec4 {
+        return response(simulation, step, row.a, row.r_a, impulse) +
+               response(simulation, step, row.b, row.r_b, impulse);
+    };
     const Vec4& n = row.normal;
-    const double along = n.dot(K * n);
+    const double rounding = kNoResponse * (greatest_response(simulation.type_of(row.a)) +
+                                           greatest_response(simulation.type_of(row.b)));
+    const double along = n.dot(both(n));
     row.solve.mass = row.relax.mass = along > rounding ? 1 / along : 0;
 
+    row.tangent_mass.setZero();
+    if (row.friction == 0) return;
     // The tangent block, filled up along the normal so that it can be inverted in world axes.
     const Mat4 P = Mat4::Identity() - n * n.transpose();
-    const Mat4 tangent = P * K * P;
+    Mat4 K;
+    for (int i = 0; i < 4; ++i) K.col(i) = both(P.col(i));
+    const Mat4 tangent = P * K;
     const double scale = tangent.trace() / 3;
-    row.tangent_mass.setZero();
     if (scale > rounding) row.tangent_mass = (tangent + scale * n * n.transpose()).inverse();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/dynamics/step_data.hpp"
 
 namespace tesserae {
@@ -36,8 +38,8 @@ inline Vec4 relative_velocity(const StepData& step, const ContactRow& row) {
 
 /// The nearest impulse that friction allows.
 inline Vec4 clamped_to_ball(const Vec4& impulse, double radius) {
-    const double length = impulse.norm();
-    return length > radius ? Vec4(radius / length * impulse) : impulse;
+    const double squared = impulse.squaredNorm();
+    return squared > radius * radius ? Vec4(radius / std::sqrt(squared) * impulse) : impulse;
 }
 
 }  // namespace tesserae

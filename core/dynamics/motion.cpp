@@ -16,6 +16,22 @@ void advance_half(const Simulation& simulation, StepData& step, BodyId id) {
                 step.angular_velocity[id]);
 }
 
+/// The sum over the body's planes of 1/I times the plane, seen from the world, times itself.
+BivectorMap world_inverse_inertia(const TypeProperties& type, const Rotor& rotor) {
+    const Mat4 R = to_matrix(rotor);
+    const Bivector& d = type.inverse_inertia;
+    BivectorMap map = BivectorMap::Zero();
+    const auto add = [&](int k, int l, double inverse) {
+        const Bivector p = wedge(Vec4(R.col(k)), Vec4(R.col(l)));
+        Eigen::Matrix<double, 8, 1> plane;
+        plane << p.xy, p.xz, p.xw, p.yz, p.yw, p.zw, 0, 0;
+        for (int i = 0; i < 6; ++i) map.col(i) += (inverse * plane[i]) * plane;
+    };
+    add(0, 1, d.xy), add(0, 2, d.xz), add(0, 3, d.xw);
+    add(1, 2, d.yz), add(1, 3, d.yw), add(2, 3, d.zw);
+    return map;
+}
+
 /// How far from where it is a body's surface can get within a time.
 double reach(const Simulation& simulation, const StepData& step, BodyId id, double time) {
     const TypeProperties& type = simulation.type_of(id);
@@ -37,6 +53,8 @@ void advance_first_half(const Simulation& simulation, StepData& step, Range bodi
             step.angular_velocity[id] = last.angular_velocity[id];
         }
         advance_half(simulation, step, id);
+        const TypeProperties& type = simulation.type_of(id);
+        if (!type.isotropic) step.inverse_inertia[id] = world_inverse_inertia(type, step.rotor[id]);
     }
 }
 

@@ -7,7 +7,8 @@ namespace tesserae {
 /// Half a sub-step of free motion at the present velocities, of the bodies in the range. The first
 /// half of the first sub-step starts from the last state. With the velocities changed between the
 /// two halves a sub-step moves x += h (v0 + v1) / 2, which is exact under constant gravity. Bodies
-/// that turn freely keep their angular momentum: turn_freely().
+/// that turn freely keep their angular momentum: turn_freely(). The first half ends where contacts
+/// act, and leaves step.inverse_inertia there.
 void advance_first_half(const Simulation& simulation, StepData& step, Range bodies);
 void advance_second_half(const Simulation& simulation, StepData& step, Range bodies);
 

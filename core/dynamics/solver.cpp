@@ -13,7 +13,7 @@ void apply_impulse(const Simulation& simulation, StepData& step, BodyId id, cons
     const TypeProperties& type = simulation.type_of(id);
     if (!type.movable) return;
     step.velocity[id] += type.inverse_mass * impulse;
-    step.angular_velocity[id] += angular_response(type, step.rotor[id], wedge(r, impulse));
+    step.angular_velocity[id] += angular_response(simulation, step, id, wedge(r, impulse));
 }
 
 void apply_impulse(const Simulation& simulation, StepData& step, const ContactRow& row,
@@ -39,6 +39,7 @@ double solve_normal(const Simulation& simulation, StepData& step, ContactRow& ro
     const double impulse =
         std::max(0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - v));
     const double change = impulse - row.normal_impulse;
+    if (change == 0) return 0;
     apply_impulse(simulation, step, row, change * row.normal);
     row.normal_impulse = impulse;
     return change;
@@ -60,8 +61,8 @@ double iterate(const Simulation& simulation, StepData& step, std::uint32_t begin
             const bool backward = (last - iteration) % 2 == kBackward;
             ContactRow& row = step.rows[backward ? begin + (end - 1 - i) : i];
             const double change = solve_normal(simulation, step, row, row.*kPass);
-            if (iteration == last && change != 0)
-                residual = std::max(residual, std::abs(change) / row.relax.mass);
+            if (change == 0 && row.normal_impulse == 0) continue;  // apart, and friction is 0 too
+            if (iteration == last) residual = std::max(residual, std::abs(change) / row.relax.mass);
             solve_friction(simulation, step, row);
         }
     return residual;

@@ -73,6 +73,9 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.velocity.resize(count);
     step.angular_velocity.resize(count);
     step.bounds.resize(count);
+    const auto turns_unevenly = [](const TypeProperties& type) { return !type.isotropic; };
+    if (std::any_of(simulation.types.begin(), simulation.types.end(), turns_unevenly))
+        step.inverse_inertia.resize(count);
 }
 
 void begin_contacts(StepData& step) {

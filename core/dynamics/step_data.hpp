@@ -24,6 +24,10 @@ struct Bounds {
     Vec4 lower, upper;  ///< world [m]
 };
 
+/// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
+/// rows of zeros make a column two whole vector registers.
+using BivectorMap = Eigen::Matrix<double, 8, 6>;
+
 /// Two bodies that may touch in the step, a < b.
 struct BodyPair {
     BodyId a, b;
@@ -83,6 +87,9 @@ struct StepData {
     std::vector<Vec4> velocity;
     std::vector<Bivector> angular_velocity;
 
+    /// World, in the middle of the sub-step, of the bodies that are not isotropic.
+    std::vector<BivectorMap> inverse_inertia;
+
     std::vector<Bounds> bounds;     ///< of every body
     std::vector<BodyPair> pairs;    ///< ascending
     std::vector<Contact> contacts;  ///< ascending (a, b, feature)
@@ -104,6 +111,22 @@ auto key_of(const ContactOrImpulse& c) {
 inline const std::vector<ContactImpulse>& last_impulses(const Simulation& simulation,
                                                         const StepData& step) {
     return step.substep == 0 ? simulation.memory.impulses : step.recalled;
+}
+
+/// What an angular impulse [N m s, world] does to the angular velocity of a body in this sub-step:
+/// that of its type and rotor.
+inline Bivector angular_response(const Simulation& simulation, const StepData& step, BodyId id,
+                                 const Bivector& impulse) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (type.isotropic) return type.inverse_inertia.xy * impulse;
+    const BivectorMap& map = step.inverse_inertia[id];
+    Eigen::Matrix<double, 8, 1> sum = impulse.xy * map.col(0);
+    sum += impulse.xz * map.col(1);
+    sum += impulse.xw * map.col(2);
+    sum += impulse.yz * map.col(3);
+    sum += impulse.yw * map.col(4);
+    sum += impulse.zw * map.col(5);
+    return {sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]};
 }
 
 inline bool is_asleep(const StepData& step, BodyId id) {
