@@ -1,6 +1,6 @@
-"""Makes bench/results out of what the programs printed.
+"""Makes the tables of the inner loops out of what the programs printed.
 
-usage: report.py HEAD ACCURACY_CSV HOT_LOOPS_JSON CONTACTS_DOUBLE_JSON CONTACTS_FLOAT_JSON RESULTS_FOLDER
+usage: report.py HEAD HOT_LOOPS_JSON CONTACTS_DOUBLE_JSON CONTACTS_FLOAT_JSON RESULTS_FOLDER
 HEAD holds the comment lines (machine, build, commit) that begin every CSV file.
 """
 
@@ -10,7 +10,6 @@ import sys
 
 import numpy as np
 
-import report_accuracy
 from report_accuracy import write_csv
 
 
@@ -65,10 +64,9 @@ def report_contacts(head, paths, results):
 
 
 def main():
-    head_path, accuracy, hot_loops, *contacts, results = sys.argv[1:]
+    head_path, hot_loops, *contacts, results = sys.argv[1:]
     with open(head_path) as file:
         head = file.read()
-    report_accuracy.report(head, accuracy, f"{results}/accuracy")
     write_benchmarks(f"{results}/hot_loops.csv", head, read_benchmarks(hot_loops))
     report_contacts(head, contacts, results)
 

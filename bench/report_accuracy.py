@@ -1,13 +1,16 @@
 """Error against run time: one CSV file and one plot an experiment, fitted orders, and which way of
-spending a step is best. Reads the CSV that the program accuracy prints.
+spending a step is best.
 
-A way is (integrator, solver, sub-steps, iterations); its points are its numbers of steps a second.
+usage: report_accuracy.py HEAD ACCURACY_CSV RESULTS_FOLDER
+HEAD holds the comment lines (machine, build, commit) that begin every CSV file; ACCURACY_CSV is what
+the program accuracy printed. A way is (integrator, solver, sub-steps, iterations); its points are its numbers of steps a second.
 """
 
 import collections
 import csv
 import io
 import os
+import sys
 
 import matplotlib
 
@@ -245,3 +248,13 @@ def report(head, path, folder):
               ["experiment", "quantity", "unit", "integrator", "solver", "substeps", "iterations",
                "order", "error_60", "error_240", "error_960"], orders)
     report_ways(head, tree, folder)
+
+
+def main():
+    head_path, accuracy, folder = sys.argv[1:]
+    with open(head_path) as file:
+        report(file.read(), accuracy, folder)
+
+
+if __name__ == "__main__":
+    main()

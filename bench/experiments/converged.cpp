@@ -85,7 +85,7 @@ Experiment stack_of_boxes(const Knobs& knobs) {
 
 /// Spheres and boxes in turn, in layers of eight, above a floor between walls.
 Experiment mixed_pile(const Knobs& knobs) {
-    constexpr double kDuration = 0.25;
+    constexpr double kDuration = 0.4;
     static const Bodies bodies = [] {
         Bodies b = floor_of(0.5, 0);
         for (int axis : {0, 2, 3})
@@ -94,13 +94,13 @@ Experiment mixed_pile(const Knobs& knobs) {
         std::mt19937_64 engine(9);
         std::uniform_real_distribution<> part(-1, 1);
         for (int i = 0; i < 40; ++i) {
-            const Vec4 place{i % 2 - 0.5, 0.35 + 0.7 * (i / 8), i / 2 % 2 - 0.5, i / 4 % 2 - 0.5};
+            const Vec4 place{i % 2 - 0.5, 0.5 + 0.9 * (i / 8), i / 2 % 2 - 0.5, i / 4 % 2 - 0.5};
             Vec4 x{1.1 * place[0], place[1], 1.1 * place[2], 1.1 * place[3]};
             for (int k = 0; k < 4; ++k) x[k] += 0.03 * part(engine);
             if (i % 3 == 0) {
                 const double side = 0.4 + 0.1 * part(engine);
                 add(b, box_type({side, 0.4, 0.5, side}, 60, 0.5), x);
-                b.rotor.back() = exp(Bivector{0.1 * part(engine), 0.1 * part(engine), 0.1});
+                b.rotor.back() = exp(Bivector{0.3 * part(engine), 0.2, 0.3 * part(engine), -0.2});
             } else {
                 add(b, sphere_type(0.3 + 0.02 * part(engine), 40, 0.5, 0), x);
             }
