@@ -3,7 +3,8 @@ spending a step is best.
 
 usage: report_accuracy.py HEAD ACCURACY_CSV RESULTS_FOLDER
 HEAD holds the comment lines (machine, build, commit) that begin every CSV file; ACCURACY_CSV is what
-the program accuracy printed. A way is (integrator, solver, sub-steps, iterations); its points are its numbers of steps a second.
+the program accuracy printed. A way is (integrator, solver, sub-steps, iterations); its points are its
+numbers of steps a second.
 """
 
 import collections
@@ -81,10 +82,10 @@ def order_of(points):
     return f"{order:.2f}" if residual < LARGEST_RESIDUAL else "no power"
 
 
-def label_of(way):
+def label_of(way, of_integrators=False):
     integrator, solver, substeps, iterations = way
-    if integrator == "euler":
-        return "euler"
+    if of_integrators:
+        return integrator
     return f"{solver}, {substeps} x {iterations}"
 
 
@@ -108,10 +109,11 @@ def plot(name, quantities, path):
                                 squeeze=False)
     for axes in grid.flat[len(shown):]:
         axes.axis("off")
+    of_integrators = any(way[0] == "euler" for ways in shown.values() for way in ways)
     for axes, ((quantity, unit), ways) in zip(grid.flat, shown.items()):
         for way, points in ways.items():
             axes.loglog([p.time for p in points], [max(p.error, ROUNDING / 100) for p in points],
-                        label=label_of(way), **style_of(way))
+                        label=label_of(way, of_integrators), **style_of(way))
         if doubt:
             axes.axhline(doubt, color="k", lw=0.8, ls=":", label="doubt about the converged run")
         most = max(p.error for points in ways.values() for p in points)
@@ -119,8 +121,9 @@ def plot(name, quantities, path):
             axes.set_ylim(ROUNDING / 200, ROUNDING)
         elif axes.get_ylim()[1] < 10 * axes.get_ylim()[0]:
             axes.set_ylim(most / 20, 3 * most)
-        axes.set_title(f"{quantity}; order {order_of(ways[DEFAULT])} at the default",
-                       fontsize=10)
+        order = order_of(ways[DEFAULT])
+        order = f"order {order} at the default" if order[-1].isdigit() else order
+        axes.set_title(f"{quantity}; {order}", fontsize=10)
         axes.set_ylabel(f"error [{unit}]")
         axes.set_xlabel("processor time of one simulated second [µs]")
         axes.grid(True, which="major", lw=0.3)
@@ -131,9 +134,10 @@ def plot(name, quantities, path):
     figure.tight_layout(rect=(0, 1 / height, 1, 1))
     handles, labels = grid.flat[0].get_legend_handles_labels()
     if len(labels) > 1:
+        way = "integrator" if of_integrators else "solver, sub-steps x iterations"
         figure.legend(handles, labels, loc="lower center", ncol=5, fontsize=8,
-                      title="solver, sub-steps x iterations; points: steps a second, rising to "
-                      "the right", title_fontsize=8)
+                      title=f"{way}; points: steps a second, rising to the right",
+                      title_fontsize=8)
     save(figure, path)
 
 
