@@ -56,12 +56,23 @@ bool first_nonzero_is_negative(const Rotor& r) {
     return false;
 }
 
-/// Matrices of the rotation that one quaternion of the pair stands for, the other being 1.
+/// Matrices of the rotation that one quaternion of the pair stands for, the other being 1: its
+/// scalar times 1, less the matrix of its bivector.
 Mat4 plus_matrix(const Quaternion& q) {
-    return q.s * Mat4::Identity() - to_matrix(Bivector{q.x, q.y, q.z, -q.z, q.y, -q.x});
+    Mat4 m;
+    m.col(0) = assembled(q.s, -q.x, -q.y, -q.z);
+    m.col(1) = assembled(q.x, q.s, q.z, -q.y);
+    m.col(2) = assembled(q.y, -q.z, q.s, q.x);
+    m.col(3) = assembled(q.z, q.y, -q.x, q.s);
+    return m;
 }
 Mat4 minus_matrix(const Quaternion& q) {
-    return q.s * Mat4::Identity() - to_matrix(Bivector{q.x, q.y, q.z, q.z, -q.y, q.x});
+    Mat4 m;
+    m.col(0) = assembled(q.s, -q.x, -q.y, -q.z);
+    m.col(1) = assembled(q.x, q.s, -q.z, q.y);
+    m.col(2) = assembled(q.y, q.z, q.s, -q.x);
+    m.col(3) = assembled(q.z, -q.y, q.x, q.s);
+    return m;
 }
 
 }  // namespace
@@ -82,27 +93,6 @@ Rotor exp(const Bivector& b) {
 Bivector log(const Rotor& r) {
     const QuaternionPair q = to_pair(r);
     return from_pair({log(q.plus), log(q.minus)}).b;
-}
-
-InvariantPlanes invariant_planes(const Bivector& b) {
-    // b = (plus + minus)/2 in the two ideals; scaling each to the norm that the other has gives the
-    // simple parts: m1 = (|plus| + |minus|)/2 in the plane (p + m)/2, m2 half the difference.
-    const QuaternionPair q = to_pair({0, b, 0});
-    const double plus = q.plus.vector_norm(), minus = q.minus.vector_norm(), sum = plus + minus;
-    if (sum < 1e-300) return {b, {}};  // zero; or so small that every product of it is zero
-    const auto unit = [](const Quaternion& v, double n) {
-        return Quaternion{0, v.x / n, v.y / n, v.z / n};
-    };
-    // Of an isoclinic b one is zero, or the rounding of a product or two of rotors, and has no
-    // direction: take the other's.
-    const double rounding = 4e-15 * sum;
-    const Quaternion up = plus > rounding ? unit(q.plus, plus) : unit(q.minus, minus);
-    const Quaternion um = minus > rounding ? unit(q.minus, minus) : up;
-    const Bivector major = from_pair({up, um}).b;
-    const Bivector minor = from_pair({up, {0, -um.x, -um.y, -um.z}}).b;
-    // plus^2 - minus^2 = -2 b ^ b: so the small part of a nearly simple b keeps its digits.
-    const Bivector u = (1 / sum) * b;
-    return {0.5 * sum * major, -sum * wedge(u, u) * minor};
 }
 
 Rotor projected_to_spin4(const Rotor& r) {

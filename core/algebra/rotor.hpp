@@ -36,20 +36,23 @@ Rotor exp(const Bivector& b);
 /// lie in [0, pi]. Where an angle is pi its direction is free: a fixed one is taken.
 Bivector log(const Rotor& r);
 
-/// The two commuting simple bivectors with first + second = b and |first| >= |second|. For an
-/// isoclinic b (|first| = |second|) any orthogonal pair would do; the one that holds the x axis is
-/// returned.
-struct InvariantPlanes {
-    Bivector first, second;
-};
-InvariantPlanes invariant_planes(const Bivector& b);
-
 /// The unit rotor nearest to a drifted one, on both conditions (rescaling alone mends only one).
 /// Needs a rotor that is not a null element: s, B, p with |s^2 + |B|^2 + p^2| > |2 s p - B ^ B|.
 Rotor projected_to_spin4(const Rotor& r);
 
 /// R v R~ for all four axes: the rotation as an orthogonal matrix of determinant +1.
 Mat4 to_matrix(const Rotor& r);
+
+/// R y R~ for the unit vector y, where a capsule's core points: column 1 of to_matrix(r), without
+/// the others. Inline, since it takes less time than a call that returns a vector in memory.
+inline Vec4 y_axis_of(const Rotor& r) {
+    // The product of the two quaternions of to_matrix(), one of them as a column.
+    const Bivector& b = r.b;
+    const double ps = r.s + r.p, px = b.xy - b.zw, py = b.xz + b.yw, pz = b.xw - b.yz;
+    const double ms = r.s - r.p, mx = b.xy + b.zw, my = b.xz - b.yw, mz = b.xw + b.yz;
+    return assembled(ps * mx + px * ms - py * mz + pz * my, ps * ms - px * mx + pz * mz + py * my,
+                     pz * ms - py * mx - ps * mz - px * my, ps * my - pz * mx - py * ms - px * mz);
+}
 
 /// The rotor, up to sign, of an orthogonal matrix of determinant +1. The sign makes the first of
 /// s, xy, ..., zw, p that is beyond kRotorNoise positive.

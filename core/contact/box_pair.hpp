@@ -65,9 +65,15 @@ struct BoxPoints {
     /// The same points for the swapped pair: its first box's frame taken to its second's.
     /// @param pair  the pair that these points are of
     void swap_boxes(const BoxPair& pair);
+    void clear();
     /// Appends the point unless it lies on one that is already there.
-    void add_distinct(const BoxPoint& candidate);
+    void add_distinct(const Vec4& on_b, double separation, const BoxFace& face_a,
+                      const BoxFace& face_b);
     double least_separation() const;
+
+  private:
+    using Lanes = Eigen::Array4d;
+    std::array<Lanes, 16> marks_;  ///< a number of each point, the same for points in one place
 };
 
 /// -1 or +1: +1 for 0.

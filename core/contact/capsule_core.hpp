@@ -18,7 +18,7 @@ struct CapsuleCore {
 
 /// In the world.
 inline CapsuleCore core_of(const Hypercapsule& capsule, const Pose& pose) {
-    return {pose.position, rotate(pose.rotor, Vec4::UnitY()), 0.5 * capsule.height};
+    return {pose.position, y_axis_of(pose.rotor), 0.5 * capsule.height};
 }
 
 /// A distance of two cores below this part of the lengths that it was computed from is rounding

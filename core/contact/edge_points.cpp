@@ -36,7 +36,7 @@ class Meeting {
         : pair_(pair), axis_(axis), points_(points) {
         normal_ = normal_of(pair, axis);
         points_.normal = normal_;
-        points_.count = 0;
+        points_.clear();
         const Vec4 slope = pair.rotation.transpose() * normal_;
         double least = 0;
         extra_ = -1;
@@ -114,10 +114,10 @@ class Meeting {
                       false, 0);
         }
         const Vec4 on_b = point_of_b(along.clamped(nearest(end.at)), end.at);
-        BoxPoint point{on_b, normal_.dot(on_b) - height_, face_a_, face_b_};
-        point.face_b[extra_] = 0;
-        (end.of_b ? point.face_b : point.face_a)[end.axis] = end.side;
-        points_.add_distinct(point);
+        BoxFace face_a = face_a_, face_b = face_b_;
+        face_b[extra_] = 0;
+        (end.of_b ? face_b : face_a)[end.axis] = end.side;
+        points_.add_distinct(on_b, normal_.dot(on_b) - height_, face_a, face_b);
     }
 
     const BoxPair& pair_;
@@ -139,7 +139,6 @@ void meet_at_edge(const BoxPair& pair, const EdgeAxis& axis, double bias, BoxPoi
 void meet_at_witness(const BoxPair& pair, const BoxWitness& witness, double bias,
                      BoxPoints& points) {
     points.normal = witness.normal;
-    points.count = 1;
     // Each of `points` with both coordinates, so that it can be moved along a pair of axes.
     std::array<BoxWitness, 8> corner;
     corner[0] = witness;
@@ -171,11 +170,11 @@ void meet_at_witness(const BoxPair& pair, const BoxWitness& witness, double bias
             }
             count *= 2;
         }
-    points.count = 0;
+    points.clear();
     for (int c = 0; c < count; ++c) {
         const Vec4 on_b = pair.offset + pair.rotation * corner[c].on_b;
         const double separation = witness.normal.dot(on_b - corner[c].on_a);
-        points.add_distinct({on_b, separation, corner[c].face_a, corner[c].face_b});
+        points.add_distinct(on_b, separation, corner[c].face_a, corner[c].face_b);
     }
 }
 

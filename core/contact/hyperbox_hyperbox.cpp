@@ -39,13 +39,14 @@ void meet_at_edges(const BoxPair& pair, const EdgeAxis& axis, BoxPoints& points)
 void meet_at_vertex(const BoxPair& pair, const SeparatingAxes& axes, BoxPoints& points) {
     points.normal = best_normal(pair, axes);
     const Vec4 slope = pair.rotation.transpose() * points.normal;
-    BoxPoint vertex{pair.offset, axes.gap(), {}, {}};
+    Vec4 vertex = pair.offset;
+    BoxFace face;
     for (int j = 0; j < 4; ++j) {
-        vertex.face_b[j] = static_cast<signed char>(-side_of(slope[j]));
-        vertex.on_b += (vertex.face_b[j] * pair.half_b[j]) * pair.rotation.col(j);
+        face[j] = static_cast<signed char>(-side_of(slope[j]));
+        vertex += (face[j] * pair.half_b[j]) * pair.rotation.col(j);
     }
-    points.count = 0;
-    points.add_distinct(vertex);
+    points.clear();
+    points.add_distinct(vertex, axes.gap(), {}, face);
 }
 
 void find_points(const BoxPair& pair, const SeparatingAxes& axes, const BoxSeparation& separation,
@@ -68,20 +69,20 @@ void find_points(const BoxPair& pair, const SeparatingAxes& axes, const BoxSepar
 /// which rounding may take there.
 void report(const BoxPair& pair, const BoxPoints& points, const Vec4& position, const Mat4& axes,
             double margin, PairContacts& out) {
-    const Vec4 normal = axes * points.normal;
     std::array<ContactPoint, kManifoldInput> list;
     std::size_t count = 0;
     const double most = std::max(margin, points.least_separation());
     for (int i = 0; i < points.count; ++i) {
         const BoxPoint& p = points.point[i];
         if (p.separation > most) continue;
-        const Vec4 middle = p.on_b - (0.5 * p.separation) * points.normal;
-        list[count++] = {position + pair.unit * (axes * middle), pair.unit * p.separation,
+        list[count++] = {p.on_b - (0.5 * p.separation) * points.normal, p.separation,
                          kFaces * code_of(p.face_a) + code_of(p.face_b)};
     }
-    const std::size_t kept = reduce_manifold({list.data(), count}, normal);
+    const std::size_t kept = reduce_manifold({list.data(), count}, points.normal);
+    const Vec4 normal = axes * points.normal;
     for (std::size_t i = 0; i < kept; ++i)
-        out.add(list[i].feature, normal, list[i].separation, list[i].point);
+        out.add(list[i].feature, normal, pair.unit * list[i].separation,
+                position + pair.unit * (axes * list[i].point));
 }
 
 }  // namespace

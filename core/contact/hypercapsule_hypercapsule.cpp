@@ -20,24 +20,25 @@ struct Cores {
     double cosine;    ///< of the axes
     Vec4 across;      ///< b's axis without its part along a's
     double centre_b;  ///< b's centre along a's axis, from a's centre
+    double centre_a;  ///< a's centre along b's axis, from b's centre
     double sine2;     ///< |across|^2
 
-    Cores(const CapsuleCore& core_a, const CapsuleCore& core_b)
-        : a(core_a),
-          b(core_b),
+    Cores(const Hypercapsule& first, const Pose& pose_a, const Hypercapsule& second,
+          const Pose& pose_b)
+        : a(core_of(first, pose_a)),
+          b(core_of(second, pose_b)),
           between(b.centre - a.centre),
           cosine(a.axis.dot(b.axis)),
           across(b.axis - cosine * a.axis),
-          centre_b(a.axis.dot(between)) {
+          centre_b(a.axis.dot(between)),
+          centre_a(-b.axis.dot(between)) {
         across -= a.axis.dot(across) * a.axis;  // for a small angle the first time was not enough
         sine2 = across.squaredNorm();
     }
 
     Vec4 gap(double s, double t) const { return between + t * b.axis - s * a.axis; }
     /// The point of b's core nearest to a's at s.
-    double on_b(double s) const {
-        return std::clamp(b.axis.dot(s * a.axis - between), -b.half, b.half);
-    }
+    double on_b(double s) const { return std::clamp(centre_a + cosine * s, -b.half, b.half); }
     double length() const { return stable_norm(between) + a.half + b.half; }
 };
 
@@ -58,19 +59,22 @@ Closest closest_points(const Cores& cores) {
     t = std::clamp(t, -b.half, b.half);
     const double wanted = cores.centre_b + cores.cosine * t;
     const double s = std::clamp(wanted, -a.half, a.half);
-    if (s != wanted) t = cores.on_b(s);
+    const double again = cores.on_b(s);
+    t = s != wanted ? again : t;
 
-    // What the gap has along a core, or at an end back along it, is rounding.
+    // What the gap has along a core, or at an end back along it, is rounding. Which of these cases
+    // it is nobody can predict, so they are told apart by factors rather than branches.
     Vec4 gap = cores.gap(s, t);
+    const double along_a = a.axis.dot(gap), along_b = b.axis.dot(gap);
     const bool inside_a = std::abs(s) < a.half, inside_b = std::abs(t) < b.half;
-    const bool across_a = inside_a || a.axis.dot(gap) * s < 0;
-    const bool across_b = inside_b || b.axis.dot(gap) * t > 0;
-    if (across_a) gap -= a.axis.dot(gap) * a.axis;
-    if (across_b && !across_a) gap -= b.axis.dot(gap) * b.axis;
-    if (across_b && across_a && cores.sine2 > 0) {
-        const double along = cores.across.dot(gap) / std::sqrt(cores.sine2);
-        if (std::abs(along) <= kCoreRounding * cores.length())
-            gap -= along / std::sqrt(cores.sine2) * cores.across;
+    const bool across_a = inside_a | (along_a * s < 0);
+    const double part_a = across_a ? along_a : 0;
+    const bool across_b = inside_b | ((along_b - cores.cosine * part_a) * t > 0);
+    const double part_b = across_b & !across_a ? along_b : 0;
+    gap -= part_a * a.axis + part_b * b.axis;
+    if (across_b & across_a & (cores.sine2 > 0)) {
+        const double sine = std::sqrt(cores.sine2), along = cores.across.dot(gap) / sine;
+        if (std::abs(along) <= kCoreRounding * cores.length()) gap -= along / sine * cores.across;
     }
     return {s, t, gap, inside_a && inside_b};
 }
@@ -93,7 +97,7 @@ void contacts_between(const Hypercapsule& a, const Pose& pose_a, const Hypercaps
     const double reach = radii + 0.5 * (a.height + b.height) + margin;
     if (!((pose_b.position - pose_a.position).squaredNorm() <= reach * reach)) return;
 
-    const Cores cores(core_of(a, pose_a), core_of(b, pose_b));
+    const Cores cores(a, pose_a, b, pose_b);
     const Closest closest = closest_points(cores);
     const double distance = stable_norm(closest.gap);
     if (!(distance - radii <= margin)) return;

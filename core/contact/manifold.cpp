@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <tuple>
-#include <utility>
 
 #include "core/error.hpp"
 
@@ -18,93 +16,149 @@ constexpr double kAboutEqual = 0.9;
 /// do not span another dimension.
 constexpr double kFlat = 1e-12;
 
-struct Candidate {
-    Vec4 place;     ///< relative to the deepest, seen along the normal
-    Vec4 residual;  ///< what is left of it orthogonal to the dimensions that are spanned
-    double nearest = std::numeric_limits<double>::infinity();  ///< squared, to the kept points
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A number of each of four points, or a coordinate: one instruction serves all four.
+using Lanes = Eigen::Array4d;
+using Coordinates = std::array<Lanes, 4>;
+
+Lanes dot(const Coordinates& v, const Vec4& with) {
+    return v[0] * with[0] + v[1] * with[1] + v[2] * with[2] + v[3] * with[3];
+}
+void remove_along(const Vec4& unit, Coordinates& v) {
+    const Lanes along = dot(v, unit);
+    for (int k = 0; k < 4; ++k) v[k] -= along * unit[k];
+}
+Lanes squared_norms(const Coordinates& v) {
+    return v[0].square() + v[1].square() + v[2].square() + v[3].square();
+}
+
+struct Four {
+    Coordinates place;     ///< relative to the deepest, seen along the normal
+    Coordinates residual;  ///< what is left of it orthogonal to the dimensions that are spanned
+    Lanes nearest;         ///< squared distance to the kept points
+    Lanes most;  ///< what a measure of a point may be: -1 where one is kept or there is none
 };
+/// The numbers 0 to count - 1 where is_before(i, j) puts them: by counting, since sorting so few
+/// costs more in mispredicted branches.
+template <class IsBefore>
+std::array<std::uint8_t, kManifoldInput> sorted(std::size_t count, IsBefore is_before) {
+    std::array<std::uint8_t, kManifoldInput> order{};
+    for (std::size_t i = 0; i < count; ++i) {
+        unsigned place = 0;
+        for (std::size_t j = 0; j < count; ++j) place += is_before(j, i) ? 1u : 0u;
+        order[place] = static_cast<std::uint8_t>(i);
+    }
+    return order;
+}
 
 class Reduction {
   public:
-    Reduction(std::span<ContactPoint> points, const Vec4& normal) : points_(points) {
-        keep(deepest_of([](std::size_t) { return true; }));
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const Vec4 between = points[i].point - points[0].point;
-            candidates_[i].place = between - normal.dot(between) * normal;
-            candidates_[i].residual = candidates_[i].place;
+    Reduction(std::span<const ContactPoint> points, const Vec4& normal)
+        : points_(points), fours_((points.size() + 3) / 4) {
+        std::array<double, kManifoldInput> separation;
+        std::array<std::uint32_t, kManifoldInput> feature;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            separation[i] = points[i].separation, feature[i] = points[i].feature;
+        order_ = sorted(points.size(), [&](std::size_t i, std::size_t j) {
+            return bool((separation[i] < separation[j]) |
+                        ((separation[i] == separation[j]) & (feature[i] < feature[j])));
+        });
+        const Vec4 deepest = points[order_[0]].point;
+        for (std::size_t i = 0; i < 4 * fours_; ++i) {
+            const Vec4 place =
+                i < points.size() ? Vec4(points[order_[i]].point - deepest) : Vec4(Vec4::Zero());
+            Four& four = four_[i / 4];
+            for (int k = 0; k < 4; ++k) four.place[k][i % 4] = place[k];
+            four.most[i % 4] = i < points.size() ? kInfinity : -1;
         }
-        approach(candidates_[0]);
+        for (std::size_t f = 0; f < fours_; ++f) {
+            Four& four = four_[f];
+            remove_along(normal, four.place);
+            four.residual = four.place;
+            four.nearest = squared_norms(four.place);
+        }
+        keep(0);
     }
 
-    void run() {
-        const double length = farthest(&Reduction::off_span);
+    /// The points to keep.
+    std::array<ContactPoint, kManifoldPoints> run() {
+        const auto off_span = [](const Four& four) { return squared_norms(four.residual); };
+        double length = 0;
         for (int dimension = 0; dimension < 3; ++dimension) {
-            if (!(farthest(&Reduction::off_span) > kFlat * length)) break;
-            add_farthest(&Reduction::off_span);
-            span(candidates_[kept_ - 1].residual.normalized());
+            const double most = farthest(off_span);
+            if (dimension == 0) length = most;
+            if (!(most > kFlat * length)) break;
+            keep(first_of(most));
+            const Vec4 direction = one_of(&Four::residual, kept_[count_ - 1]).normalized();
+            for (std::size_t f = 0; f < fours_; ++f) remove_along(direction, four_[f].residual);
         }
-        while (kept_ < kManifoldPoints) add_farthest(&Reduction::off_points);
+        while (count_ < kManifoldPoints)
+            keep(first_of(farthest([](const Four& four) { return four.nearest; })));
+
+        std::array<ContactPoint, kManifoldPoints> result;
+        for (std::size_t i = 0; i < count_; ++i) result[i] = points_[order_[kept_[i]]];
+        return result;
     }
 
   private:
-    using Measure = double (Reduction::*)(std::size_t) const;
-    double off_span(std::size_t i) const { return candidates_[i].residual.squaredNorm(); }
-    double off_points(std::size_t i) const { return candidates_[i].nearest; }
-
-    double farthest(Measure measure) const {
-        double most = 0;
-        for (std::size_t i = kept_; i < points_.size(); ++i)
-            most = std::max(most, (this->*measure)(i));
-        return most;
-    }
-    void add_farthest(Measure measure) {
-        const double enough = kAboutEqual * farthest(measure);
-        keep(deepest_of([&](std::size_t i) { return (this->*measure)(i) >= enough; }));
-        approach(candidates_[kept_ - 1]);
-    }
-    template <class Allowed>
-    std::size_t deepest_of(Allowed allowed) const {
-        std::size_t best = kept_;
-        bool found = false;
-        for (std::size_t i = kept_; i < points_.size(); ++i) {
-            if (!allowed(i)) continue;
-            if (!found || key(i) < key(best)) best = i;
-            found = true;
+    template <class Measure>
+    double farthest(Measure measure) {
+        Lanes largest = Lanes::Constant(-1);
+        for (std::size_t f = 0; f < fours_; ++f) {
+            measured_[f] = measure(four_[f]).min(four_[f].most);
+            largest = largest.max(measured_[f]);
         }
-        return best;
+        return largest.maxCoeff();
     }
-    std::tuple<double, std::uint32_t> key(std::size_t i) const {
-        return {points_[i].separation, points_[i].feature};
+    /// The deepest of those that are about the farthest.
+    std::size_t first_of(double most) const {
+        const double enough = kAboutEqual * most;
+        std::size_t i = 0;
+        while (i + 1 < points_.size() && !(measured_[i / 4][i % 4] >= enough)) ++i;
+        return i;
+    }
+    Vec4 one_of(Coordinates Four::*which, std::size_t i) const {
+        const Coordinates& v = four_[i / 4].*which;
+        return {v[0][i % 4], v[1][i % 4], v[2][i % 4], v[3][i % 4]};
     }
     void keep(std::size_t i) {
-        std::swap(points_[i], points_[kept_]);
-        std::swap(candidates_[i], candidates_[kept_]);
-        ++kept_;
-    }
-    void span(const Vec4& direction) {
-        for (std::size_t i = kept_; i < points_.size(); ++i)
-            candidates_[i].residual -= direction.dot(candidates_[i].residual) * direction;
-    }
-    void approach(const Candidate& kept) {
-        for (std::size_t i = kept_; i < points_.size(); ++i)
-            candidates_[i].nearest =
-                std::min(candidates_[i].nearest, (candidates_[i].place - kept.place).squaredNorm());
+        kept_[count_++] = i;
+        four_[i / 4].most[i % 4] = -1;
+        const Vec4 kept = one_of(&Four::place, i);
+        for (std::size_t f = 0; f < fours_; ++f) {
+            Coordinates between = four_[f].place;
+            for (int k = 0; k < 4; ++k) between[k] -= kept[k];
+            four_[f].nearest = four_[f].nearest.min(squared_norms(between));
+        }
     }
 
-    std::span<ContactPoint> points_;
-    std::array<Candidate, kManifoldInput> candidates_;
-    std::size_t kept_ = 0;
+    std::span<const ContactPoint> points_;
+    std::size_t fours_;
+    std::array<std::uint8_t, kManifoldInput> order_;  ///< of the points, the deepest first
+    std::array<Four, kManifoldInput / 4> four_;
+    std::array<Lanes, kManifoldInput / 4> measured_;
+    std::array<std::size_t, kManifoldPoints> kept_{};
+    std::size_t count_ = 0;
 };
 
 }  // namespace
 
 std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal) {
     TSR_ASSERT(points.size() <= kManifoldInput);
-    const std::size_t kept = std::min(points.size(), kManifoldPoints);
-    if (kept < points.size()) Reduction(points, normal).run();
-    std::sort(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(kept),
-              [](const ContactPoint& a, const ContactPoint& b) { return a.feature < b.feature; });
-    return kept;
+    if (points.size() <= kManifoldPoints) {
+        std::sort(points.begin(), points.end(), [](const ContactPoint& a, const ContactPoint& b) {
+            return a.feature < b.feature;
+        });
+        return points.size();
+    }
+    const std::array<ContactPoint, kManifoldPoints> kept = Reduction(points, normal).run();
+    std::array<std::uint32_t, kManifoldPoints> feature;
+    for (std::size_t i = 0; i < kept.size(); ++i) feature[i] = kept[i].feature;
+    const auto order =
+        sorted(kept.size(), [&](std::size_t i, std::size_t j) { return feature[i] < feature[j]; });
+    for (std::size_t i = 0; i < kept.size(); ++i) points[i] = kept[order[i]];
+    return kept.size();
 }
 
 }  // namespace tesserae

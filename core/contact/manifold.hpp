@@ -8,11 +8,11 @@
 
 namespace tesserae {
 
-/// A point of a pair whose points share one normal.
+/// A point of a pair whose points share one normal. Nothing is set: many are made, few are filled.
 struct ContactPoint {
-    Vec4 point = Vec4::Zero();  ///< midway between the two surfaces, world [m]
-    double separation = 0;      ///< along the normal [m], negative when overlapping
-    std::uint32_t feature = 0;  ///< differs from that of every other point of the pair
+    Vec4 point;             ///< midway between the two surfaces, in any frame and unit of length
+    double separation;      ///< along the normal, negative when overlapping
+    std::uint32_t feature;  ///< differs from that of every other point of the pair
 };
 
 /// As many points as a pair keeps: a cell has eight corners.
@@ -27,7 +27,7 @@ constexpr std::size_t kManifoldInput = 64;
 /// kept. Distances are seen along the normal. Of points about equally far the deepest is taken,
 /// then the one of lowest feature: the result depends on the set of points, not on their order.
 /// Takes at most kManifoldInput points.
-/// @param normal  unit, of the contact
+/// @param normal  unit, of the contact, in the frame of the points
 std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal);
 
 }  // namespace tesserae

@@ -27,8 +27,9 @@ Lanes edge_gaps(int p, int q, const Vec4& half_face, const Vec4& half_edge, cons
     for (int m = 0; m < 4; ++m)  // an edge's product with itself is exactly 0
         gap -= half_edge[m] * (edge_p[m] * edge_q - edge_q[m] * edge_p).abs();
     const Lanes squared = edge_p.square() + edge_q.square();
-    const Lanes none = Lanes::Constant(-std::numeric_limits<double>::infinity());
-    return (squared > kNoDirection * kNoDirection).select(gap / squared.sqrt(), none);
+    // Without a branch: where there is no direction left the gap is far below any other.
+    constexpr double kLeast = kNoDirection * kNoDirection, kFarBelow = 1e307;
+    return gap / squared.max(kLeast).sqrt() - kFarBelow * (kLeast - squared).max(0);
 }
 
 /// Edge axes with 2-faces of a (whose frame the arguments are in) or of b, best kept in `best`.

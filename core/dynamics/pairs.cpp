@@ -11,6 +11,13 @@ bool overlap(const Bounds& a, const Bounds& b) {
     return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
 }
 
+/// Whether the balls within two cubes overlap.
+bool balls_overlap(const Bounds& a, const Bounds& b) {
+    const Vec4 between = (a.lower + a.upper) - (b.lower + b.upper);
+    const double reach = (a.upper[0] - a.lower[0]) + (b.upper[0] - b.lower[0]);
+    return between.squaredNorm() <= reach * reach;
+}
+
 /// Whether a bounded body can reach an unbounded one, by the distance of its centre.
 bool reaches(const Simulation& simulation, const StepData& step, BodyId bounded, BodyId unbounded) {
     const Bounds& bounds = step.bounds[bounded];
@@ -35,7 +42,7 @@ bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyI
         return false;
     if (!type_a.bounded) return reaches(simulation, step, b, a);
     if (!type_b.bounded) return reaches(simulation, step, a, b);
-    return true;
+    return balls_overlap(step.bounds[a], step.bounds[b]);
 }
 
 void find_pairs(const Simulation& simulation, StepData& step) {

@@ -18,8 +18,8 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// A cube about a body's centre that holds all that it can reach in the rest of the step. Infinite
-/// if unbounded.
+/// The cube about the ball, centred where the body is, that holds all that it can reach in the rest
+/// of the step. Infinite if unbounded.
 struct Bounds {
     Vec4 lower, upper;  ///< world [m]
 };

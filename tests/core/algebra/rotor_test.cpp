@@ -53,6 +53,7 @@ TEST(Rotor, MatrixIsTheSandwichOfEveryAxis) {
         EXPECT_LE((m.transpose() * m - Mat4::Identity()).norm(), error);
         EXPECT_NEAR(m.determinant(), 1, error);
         EXPECT_LE((to_matrix(a * b) - m * to_matrix(b)).norm(), kRounding);
+        EXPECT_LE((y_axis_of(a) - m.col(1)).norm(), kRounding);
         EXPECT_EQ(to_matrix(-a), m);
         const Vec4 v = random.vector();
         EXPECT_LE((rotate(a, v) - m * v).norm(), kRounding * v.norm());
