@@ -1,33 +1,56 @@
-// Error against exact results and the run time that it takes: CSV on standard output.
+// Error against known results and the run time that it takes: CSV on standard output.
+//   accuracy [NAME...]   the experiments of these names only
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <span>
+#include <string_view>
 #include <vector>
 
-#include "bench/experiments.hpp"
-#include "bench/thread_time.hpp"
+#include "bench/experiments/experiments.hpp"
+#include "bench/matrix.hpp"
 #include "core/error.hpp"
-#include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 
 namespace tesserae::bench {
 namespace {
 
-/// An experiment's errors and the times of its repeats.
+/// One experiment in one configuration: its errors and the times of its repeats.
 struct Row {
     Experiment experiment;
+    Knobs knobs;
     std::vector<Error> errors;
-    std::vector<double> serial;    ///< processor time of all steps [s]
-    std::vector<double> parallel;  ///< wall time of all steps [s]
+    std::vector<double> seconds;  ///< processor time of all steps
+    int repeats;                  ///< in all, the run that gave the errors included if it counts
 };
 
-template <class AnyWorld>
-void make_steps(AnyWorld& world, const PhysicsSettings& settings) {
-    const long steps = std::lround(settings.duration * settings.steps_per_second);
-    for (long i = 0; i < steps; ++i) world.step(1 / settings.steps_per_second);
+/// Runs longer than this [s] count themselves: the clock read beside each step is then little.
+constexpr double kLongRun = 0.1;
+
+/// Time [s] that one row may spend on repeats, and their greatest number.
+constexpr double kTimeOfRepeats = 0.15;
+constexpr int kMostRepeats = 15;
+
+Row first_run(const Listed& listed, const Knobs& knobs) {
+    Row row{listed.make(knobs), knobs, {}, {}, 1};
+    Trial trial(row.experiment.bodies, row.experiment.settings, row.experiment.crowd);
+    row.errors = row.experiment.errors(trial);
+    if (trial.seconds() > kLongRun) {
+        row.seconds.push_back(trial.seconds());
+    } else {
+        const double fitting = kTimeOfRepeats / std::max(trial.seconds(), 1e-6);
+        row.repeats = static_cast<int>(std::clamp(fitting, 3.0, 1.0 * kMostRepeats));
+    }
+    return row;
+}
+
+void repeat(Row& row) {
+    const Experiment& e = row.experiment;
+    Trial trial(e.bodies, e.settings, e.crowd);
+    trial.run();
+    row.seconds.push_back(trial.seconds());
 }
 
 template <class T>
@@ -37,24 +60,14 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
                        a.size() * sizeof(T)) == 0;
 }
 
-/// One repeat of a row. The two worlds must end alike.
-void measure(Row& row, parallel::Threads& threads) {
-    const Experiment& e = row.experiment;
-    World serial(e.bodies, e.settings);
-    const double begin = thread_time();
-    make_steps(serial, e.settings);
-    row.serial.push_back(thread_time() - begin);
-
-    parallel::ParallelWorld wide(e.bodies, e.settings);
-    threads.run([&] {
-        const auto wall_begin = std::chrono::steady_clock::now();
-        make_steps(wide, e.settings);
-        const auto wall_end = std::chrono::steady_clock::now();
-        row.parallel.push_back(std::chrono::duration<double>(wall_end - wall_begin).count());
-    });
-
-    if (!same_bits(serial.bodies().position, wide.bodies().position) ||
-        !same_bits(serial.bodies().angular_velocity, wide.bodies().angular_velocity))
+/// Either world must end with the same bits, so that an error is one of the engine's, not of the
+/// world that happens to run it.
+void require_same_bits(const Experiment& e) {
+    Trial serial(e.bodies, e.settings, false), crowd(e.bodies, e.settings, true);
+    serial.run();
+    crowd.run();
+    if (!same_bits(serial.bodies().position, crowd.bodies().position) ||
+        !same_bits(serial.bodies().angular_velocity, crowd.bodies().angular_velocity))
         throw RunError(fmt::format("{}: the serial and the parallel world differ", e.name));
 }
 
@@ -66,49 +79,49 @@ double quantile(std::vector<double> values, double part) {
 }
 
 void print(const Row& row) {
-    const PhysicsSettings& s = row.experiment.settings;
-    const double scale = 1e6 / s.duration;
-    const double median = quantile(row.serial, 0.5);
-    const double spread = (quantile(row.serial, 0.75) - quantile(row.serial, 0.25)) / median;
+    const Knobs& k = row.knobs;
+    const double scale = 1e6 / row.experiment.settings.duration;
+    const double median = quantile(row.seconds, 0.5);
+    const double spread = (quantile(row.seconds, 0.75) - quantile(row.seconds, 0.25)) / median;
     for (const Error& error : row.errors)
-        fmt::print("{},{},{},{},{},{:.3e},{:.1f},{:.0f},{:.1f}\n", row.experiment.name,
-                   error.quantity, error.unit, s.steps_per_second, s.iterations, error.value,
-                   scale * median, 100 * spread, scale * quantile(row.parallel, 0.5));
+        fmt::print("{},{},{},{},{},{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
+                   error.quantity, error.unit, name_of(k.integrator), name_of(k.solver), k.substeps,
+                   k.iterations, k.steps_per_second, error.value, scale * median, 100 * spread,
+                   row.seconds.size());
 }
 
-void run() {
-    std::vector<Experiment> list;
-    for (int steps_per_second : {30, 60, 120, 240, 480, 960, 1920}) {
-        for (Experiment& e : experiments(steps_per_second)) list.push_back(std::move(e));
-        list.push_back(column_of_spheres(steps_per_second, 10));
-    }
-    for (int iterations : {1, 2, 3, 5, 7, 15, 20, 30, 50, 100})
-        list.push_back(column_of_spheres(240, iterations));
-
+void run(std::span<char*> names) {
     std::vector<Row> rows;
-    for (Experiment& e : list) {
-        World world(e.bodies, e.settings);
-        std::vector<Error> errors = e.errors(world);
-        rows.push_back({std::move(e), std::move(errors), {}, {}});
+    for (const Listed& listed : all_experiments()) {
+        const std::string name = listed.make({}).name;
+        const auto is_it = [&](std::string_view given) { return given == name; };
+        if (!names.empty() && std::none_of(names.begin(), names.end(), is_it)) continue;
+        const double begin = thread_time();
+        require_same_bits(listed.make({.steps_per_second = 60}));
+        for (const Knobs& knobs : knobs_of(listed.kind)) rows.push_back(first_run(listed, knobs));
+        fmt::print(stderr, "{}: {:.1f} s\n", name, thread_time() - begin);
     }
     // Repeats are interleaved, so that a disturbance of the machine does not fall on one row.
-    constexpr int kRepeats = 15;
-    parallel::Threads threads(parallel::granted_cores());
-    for (int repeat = 0; repeat < kRepeats; ++repeat)
-        for (Row& row : rows) measure(row, threads);
+    for (int i = 0; i < kMostRepeats; ++i)
+        for (Row& row : rows)
+            if (static_cast<int>(row.seconds.size()) < row.repeats) repeat(row);
 
     fmt::print(
-        "motion,quantity,unit,steps_per_second,iterations,error,serial_us_per_s,spread_percent,"
-        "parallel_us_per_s\n");
+        "experiment,quantity,unit,integrator,solver,substeps,iterations,steps_per_second,error,us_"
+        "per_s,"
+        "spread_percent,repeats\n");
     for (const Row& row : rows) print(row);
 }
 
 }  // namespace
 }  // namespace tesserae::bench
 
-int main() {
+int main(int count, char** arguments) {
     try {
-        tesserae::bench::run();
+        tesserae::parallel::Threads one(1);
+        one.run([&] {
+            tesserae::bench::run({arguments + 1, static_cast<std::size_t>(count - 1)});
+        });
     } catch (const std::exception& e) {
         fmt::print(stderr, "accuracy: {}\n", e.what());
         return 1;

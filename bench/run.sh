@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds into build/bench, measures for some minutes, and writes
 # bench/results. The machine should have nothing else to do; the load is noted in the results.
-#   bash bench/run.sh
+#   bash bench/run.sh              both parts
+#   bash bench/run.sh accuracy     error against run time
+#   bash bench/run.sh speed        the inner loops
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-install_packages "${packages[@]}" libbenchmark-dev libbullet-dev python3-matplotlib python3-numpy
+install_packages "${packages[@]}" libbenchmark-dev libbullet-dev python3-matplotlib python3-numpy python3-pil
 
+case ${1:-both} in both | accuracy | speed) part=${1:-both} ;; *) echo "usage: bash bench/run.sh [accuracy|speed]" >&2; exit 2 ;; esac
 folder=$root/build/bench
 results=$root/bench/results
 raw=$folder/raw
@@ -14,8 +17,9 @@ mkdir -p "$results" "$raw"
 
 load() { cut -d ' ' -f 1 /proc/loadavg; }
 load_before=$(load)
-"$folder/bench/accuracy" >"$raw/accuracy.csv"
+[ "$part" = speed ] || "$folder/bench/accuracy" >"$raw/accuracy.csv"
 for program in hot_loops contacts_double contacts_float; do
+    [ "$part" != accuracy ] || continue
     "$folder/bench/$program" --benchmark_min_time=0.1 --benchmark_repetitions=7 \
         --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true \
         --benchmark_out="$raw/$program.json" --benchmark_out_format=json >/dev/null
@@ -23,14 +27,19 @@ done
 
 # The first lines of every result.
 commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
-changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.txt bench/'*pp' 2>/dev/null || true)
+changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.txt bench/'*pp' bench/experiments 2>/dev/null || true)
 {
     echo "# machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
     echo "# load average of one minute: $load_before before, $(load) after (one program of at most $(nproc) threads is ours)"
     cat "$folder/bench/build.txt"
     echo "# commit: $commit${changed:+ with uncommitted changes}"
-    echo "# command: bash bench/run.sh"
+    echo "# command: bash bench/run.sh ${part#both}"
 } >"$raw/head.txt"
-/usr/bin/python3 "$root/bench/report.py" "$raw/head.txt" "$raw/accuracy.csv" "$raw/hot_loops.json" \
-    "$raw"/contacts_{double,float}.json "$results"
+if [ "$part" != speed ]; then
+    /usr/bin/python3 -B "$root/bench/report_accuracy.py" "$raw/head.txt" "$raw/accuracy.csv" "$results/accuracy"
+fi
+if [ "$part" != accuracy ]; then
+    /usr/bin/python3 -B "$root/bench/report.py" "$raw/head.txt" "$raw/hot_loops.json" \
+        "$raw"/contacts_{double,float}.json "$results"
+fi
 echo "wrote $results" >&2

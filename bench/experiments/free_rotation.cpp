@@ -1,4 +1,4 @@
-#include "bench/free_rotation.hpp"
+#include "bench/experiments/free_rotation.hpp"
 
 namespace tesserae::bench {
 namespace {

@@ -1,0 +1,94 @@
+#include "bench/matrix.hpp"
+
+#include "bench/experiments/experiments.hpp"
+
+namespace tesserae::bench {
+
+std::vector<Listed> all_experiments() {
+    return {
+        {projectile, Kind::kFlight},
+        {double_rotation, Kind::kRotation},
+        {free_box, Kind::kRotation},
+        {tennis_racket, Kind::kRotation},
+        {bounces, Kind::kContact},
+        {head_on, Kind::kContact},
+        {unequal_masses, Kind::kContact},
+        {chain, Kind::kContact},
+        {close_chain, Kind::kContact},
+        {sliding_to_rolling, Kind::kContact},
+        {rolling_down, Kind::kContact},
+        {block_sticking, Kind::kContact},
+        {block_sliding, Kind::kContact},
+        {critical_angle, Kind::kContact},
+        {friction_isotropy, Kind::kContact},
+        {friction_isotropy_free, Kind::kContact},
+        {column_of_spheres, Kind::kContact},
+        {stack_of_boxes, Kind::kContact},
+        {mixed_pile, Kind::kContact},
+        {heap_of_capsules, Kind::kContact},
+        {stacked_spheres, Kind::kCrowd},
+        {elastic_stack, Kind::kCrowd},
+        {gas, Kind::kCrowd},
+    };
+}
+
+namespace {
+
+/// Ways of spending one step. Twenty iterations over all sub-steps at most, so that their times at
+/// equal steps differ by little more than the sub-steps' own cost. The first is the default.
+const std::vector<Knobs> kWays = {
+    {.solver = Solver::kImpulse, .substeps = 1, .iterations = 10},
+    {.solver = Solver::kImpulse, .substeps = 1, .iterations = 5},
+    {.solver = Solver::kImpulse, .substeps = 1, .iterations = 20},
+    {.solver = Solver::kImpulse, .substeps = 4, .iterations = 2},
+    {.solver = Solver::kImpulse, .substeps = 8, .iterations = 1},
+    {.solver = Solver::kSoft, .substeps = 1, .iterations = 10},
+    {.solver = Solver::kSoft, .substeps = 2, .iterations = 4},
+    {.solver = Solver::kSoft, .substeps = 4, .iterations = 2},
+    {.solver = Solver::kSoft, .substeps = 8, .iterations = 1},
+};
+
+/// Most sub-steps a second in which contacts and crowds are run.
+constexpr int kMostOfContacts = 1920, kMostOfCrowds = 480;
+
+}  // namespace
+
+std::vector<Knobs> knobs_of(Kind kind) {
+    std::vector<Knobs> list;
+    for (int steps : {60, 120, 240, 480, 960}) {
+        if (kind == Kind::kFlight) list.push_back({.steps_per_second = steps});
+        if (kind == Kind::kRotation)
+            for (Integrator integrator : {Integrator::kMidpoint, Integrator::kEuler})
+                list.push_back({.integrator = integrator, .steps_per_second = steps});
+        if (kind != Kind::kContact && kind != Kind::kCrowd) continue;
+        const int most = kind == Kind::kCrowd ? kMostOfCrowds : kMostOfContacts;
+        for (Knobs knobs : kWays) {
+            if (steps * knobs.substeps > most) continue;
+            knobs.steps_per_second = steps;
+            list.push_back(knobs);
+        }
+    }
+    return list;
+}
+
+const char* name_of(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::kEuler:
+            return "euler";
+        case Integrator::kMidpoint:
+            return "midpoint";
+    }
+    return "unknown";
+}
+
+const char* name_of(Solver solver) {
+    switch (solver) {
+        case Solver::kImpulse:
+            return "impulse";
+        case Solver::kSoft:
+            return "soft";
+    }
+    return "unknown";
+}
+
+}  // namespace tesserae::bench
