@@ -33,4 +33,6 @@ changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.t
 } >"$raw/head.txt"
 /usr/bin/python3 "$root/bench/report.py" "$raw/head.txt" "$raw/accuracy.csv" "$raw/hot_loops.json" \
     "$raw"/contacts_{double,float}.json "$results"
+# Last, since it fails when the engines differ by more than their errors.
+{ cat "$raw/head.txt"; "$folder/bench/box_against_bullet"; } >"$results/box_against_bullet.csv"
 echo "wrote $results" >&2
