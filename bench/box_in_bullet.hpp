@@ -51,11 +51,10 @@ class BoxInBullet {
   private:
     static btVector3 vector_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-    btRigidBody::btRigidBodyConstructionInfo start_of(const BoxMotion& motion) const {
+    btRigidBody::btRigidBodyConstructionInfo start_of(const BoxMotion& motion) {
         btVector3 inertia;
         shape_.calculateLocalInertia(kBoxMass, inertia);
-        btRigidBody::btRigidBodyConstructionInfo info(kBoxMass, nullptr,
-                                                      const_cast<btBoxShape*>(&shape_), inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(kBoxMass, nullptr, &shape_, inertia);
         const Matrix3d& R = motion.rotation;
         const btMatrix3x3 rotation(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0),
                                    R(2, 1), R(2, 2));
