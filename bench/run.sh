@@ -1,14 +1,23 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds into build/bench, measures for some minutes, and writes
-# bench/results. The machine should have nothing else to do; the load is noted in the results.
-#   bash bench/run.sh              both parts
+# Installs what is missing, builds into build/bench, measures, and writes bench/results. The machine
+# should have nothing else to do; the load is noted in the results.
+#   bash bench/run.sh              all parts, ten to twenty minutes
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
+#   bash bench/run.sh extremes     stiff and extreme scenes
+#   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
+parts=(accuracy speed extremes bullet)
+if [ $# != 0 ]; then
+    case $1 in accuracy | speed | extremes | bullet) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | extremes | bullet]" >&2
+        exit 2
+        ;;
+    esac
+fi
 install_packages "${packages[@]}" libbenchmark-dev libbullet-dev python3-matplotlib python3-numpy python3-pil
 
-case ${1:-both} in both | accuracy | speed) part=${1:-both} ;; *) echo "usage: bash bench/run.sh [accuracy|speed]" >&2; exit 2 ;; esac
 folder=$root/build/bench
 results=$root/bench/results
 raw=$folder/raw
@@ -16,30 +25,52 @@ build "$folder" benchmarks -DCMAKE_BUILD_TYPE=Release -DTESSERAE_BENCH=ON
 mkdir -p "$results" "$raw"
 
 load() { cut -d ' ' -f 1 /proc/loadavg; }
-load_before=$(load)
-[ "$part" = speed ] || "$folder/bench/accuracy" >"$raw/accuracy.csv"
-for program in hot_loops contacts_double contacts_float; do
-    [ "$part" != accuracy ] || continue
-    "$folder/bench/$program" --benchmark_min_time=0.1 --benchmark_repetitions=7 \
-        --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true \
-        --benchmark_out="$raw/$program.json" --benchmark_out_format=json >/dev/null
-done
 
-# The first lines of every result.
-commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
-changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.txt bench/'*pp' bench/experiments 2>/dev/null || true)
-{
-    echo "# machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
-    echo "# load average of one minute: $load_before before, $(load) after (one program of at most $(nproc) threads is ours)"
-    cat "$folder/bench/build.txt"
-    echo "# commit: $commit${changed:+ with uncommitted changes}"
-    echo "# command: bash bench/run.sh ${part#both}"
-} >"$raw/head.txt"
-if [ "$part" != speed ]; then
+# head_of PART LOAD_BEFORE: the first lines of every result, into raw/head.txt.
+head_of() {
+    local commit changed
+    commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
+    changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.txt bench/'*pp' bench/experiments 2>/dev/null || true)
+    {
+        echo "# machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
+        echo "# load average of one minute: $2 before, $(load) after (one program of at most $(nproc) threads is ours)"
+        cat "$folder/bench/build.txt"
+        echo "# commit: $commit${changed:+ with uncommitted changes}"
+        echo "# command: bash bench/run.sh $1"
+    } >"$raw/head.txt"
+}
+
+accuracy() {
+    "$folder/bench/accuracy" >"$raw/accuracy.csv"
+    head_of accuracy "$1"
     /usr/bin/python3 -B "$root/bench/report_accuracy.py" "$raw/head.txt" "$raw/accuracy.csv" "$results/accuracy"
-fi
-if [ "$part" != accuracy ]; then
+}
+
+speed() {
+    local program
+    for program in hot_loops contacts_double contacts_float; do
+        "$folder/bench/$program" --benchmark_min_time=0.1 --benchmark_repetitions=7 \
+            --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true \
+            --benchmark_out="$raw/$program.json" --benchmark_out_format=json >/dev/null
+    done
+    head_of speed "$1"
     /usr/bin/python3 -B "$root/bench/report.py" "$raw/head.txt" "$raw/hot_loops.json" \
         "$raw"/contacts_{double,float}.json "$results"
-fi
+}
+
+extremes() {
+    "$folder/bench/extremes" long >"$raw/extremes.csv"
+    head_of extremes "$1"
+    cat "$raw/head.txt" "$raw/extremes.csv" >"$results/extremes.csv"
+}
+
+bullet() {
+    local status=0
+    "$folder/bench/box_against_bullet" >"$raw/box_against_bullet.csv" || status=$?
+    head_of bullet "$1"
+    cat "$raw/head.txt" "$raw/box_against_bullet.csv" >"$results/box_against_bullet.csv"
+    return $status
+}
+
+for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2
