@@ -20,14 +20,17 @@ struct IslandGraph::Graph {
 
     Graph()
         : node(graph, tbb::flow::unlimited, [this](const Message& message) {
-              for (std::size_t i = message.begin; i < message.end; ++i)
-                  work(*simulation, *step, order[i]);
+              for (std::size_t i = message.begin; i < message.end; ++i) {
+                  const std::uint32_t island = order[i];
+                  Work* const work = step->islands.is_coloured(island) ? of_coloured : of_plain;
+                  work(*simulation, *step, island);
+              }
               return tbb::flow::continue_msg();
           }) {}
 
     const Simulation* simulation = nullptr;
     StepData* step = nullptr;
-    Work* work = nullptr;
+    Work *of_plain = nullptr, *of_coloured = nullptr;
     std::vector<std::uint32_t> order;  ///< islands, by falling size, then number
     tbb::flow::graph graph;
     tbb::flow::function_node<Message> node;
@@ -36,9 +39,11 @@ struct IslandGraph::Graph {
 IslandGraph::IslandGraph() : graph_(std::make_unique<Graph>()) {}
 IslandGraph::~IslandGraph() = default;
 
-void IslandGraph::run(const Simulation& simulation, StepData& step, Work& work) {
+void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_plain,
+                      Work& of_coloured) {
     Graph& g = *graph_;
-    g.work = &work;
+    g.of_plain = &of_plain;
+    g.of_coloured = &of_coloured;
     g.simulation = &simulation;
     g.step = &step;
     const std::vector<std::uint32_t>& first = step.islands.first;

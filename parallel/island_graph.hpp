@@ -18,10 +18,10 @@ class IslandGraph {
     IslandGraph(const IslandGraph&) = delete;
     IslandGraph& operator=(const IslandGraph&) = delete;
 
-    /// Of one island: core's solve_island() or relax_island().
+    /// Of one island: core's solve_island() or relax_island(), and their like for coloured ones.
     using Work = void(const Simulation&, StepData&, std::size_t island);
     /// Does the work for all islands of the step.
-    void run(const Simulation& simulation, StepData& step, Work& work);
+    void run(const Simulation& simulation, StepData& step, Work& of_plain, Work& of_coloured);
 
   private:
     struct Graph;

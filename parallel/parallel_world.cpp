@@ -8,6 +8,7 @@
 #include "core/dynamics/sleeping.hpp"
 #include "core/dynamics/solver.hpp"
 #include "parallel/chunks.hpp"
+#include "parallel/coloured_island.hpp"
 #include "parallel/island_graph.hpp"
 #include "parallel/sort_and_sweep.hpp"
 
@@ -88,7 +89,9 @@ void ParallelWorld::integrate_velocities() {
 
 void ParallelWorld::build_islands() { stages_->island_builder.build(simulation_, step_); }
 
-void ParallelWorld::solve_islands() { stages_->island_graph.run(simulation_, step_, solve_island); }
+void ParallelWorld::solve_islands() {
+    stages_->island_graph.run(simulation_, step_, solve_island, solve_coloured_island);
+}
 
 void ParallelWorld::advance_second_half() {
     for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
@@ -97,7 +100,7 @@ void ParallelWorld::advance_second_half() {
 }
 
 void ParallelWorld::relax_islands() {
-    stages_->island_graph.run(simulation_, step_, relax_island);
+    stages_->island_graph.run(simulation_, step_, relax_island, relax_coloured_island);
     end_substep(simulation_, step_);
 }
 

@@ -1,6 +1,7 @@
 #include "core/dynamics/islands.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,20 @@ BodyId IslandBuilder::root_of(BodyId id) {
 }
 
 void IslandBuilder::build(const Simulation& simulation, StepData& step) {
+    sort_by_island(simulation, step);
+    Islands& islands = step.islands;
+    step.residual.resize(islands.size());
+    islands.first_colour.assign(1, 0);
+    islands.colours.clear();
+    used_.assign(simulation.bodies.size(), 0);
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        const Range places = islands.places(island);
+        if (places.end - places.begin >= kColouredFrom) colour(simulation, step, island);
+        islands.first_colour.push_back(static_cast<std::uint32_t>(islands.colours.size()));
+    }
+}
+
+void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
     const std::vector<Contact>& contacts = step.contacts;
     TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
     const auto movable = [&](BodyId id) { return simulation.type_of(id).movable; };
@@ -44,10 +59,41 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.contacts.resize(contacts.size());
     for (std::uint32_t i = 0; i < contacts.size(); ++i)
         islands.contacts[islands.first[number_[root_of(member(contacts[i]))]]++] = i;
-    step.residual.resize(count);
     // Filling moved each start to its island's end: shift them back.
     std::shift_right(islands.first.begin(), islands.first.end(), 1);
     islands.first.front() = 0;
+}
+
+/// Each contact, in order, gets the first colour that none of its movable bodies has yet.
+void IslandBuilder::colour(const Simulation& simulation, StepData& step, std::size_t island) {
+    constexpr int kColours = 64;
+    const Range places = step.islands.places(island);
+    const auto begin = step.islands.contacts.begin() + static_cast<std::ptrdiff_t>(places.begin);
+    const std::size_t size = places.end - places.begin;
+    std::uint32_t count[kColours + 1] = {};  // the last one: left over
+    colour_.resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        const Contact& c = step.contacts[begin[static_cast<std::ptrdiff_t>(i)]];
+        std::uint64_t taken = 0;
+        for (const BodyId id : {c.a, c.b})
+            if (simulation.type_of(id).movable) taken |= used_[id];
+        const int colour = std::countr_one(taken);  // 64 if all are taken
+        colour_[i] = static_cast<std::uint8_t>(colour);
+        ++count[colour];
+        if (colour == kColours) continue;
+        for (const BodyId id : {c.a, c.b})
+            if (simulation.type_of(id).movable) used_[id] |= std::uint64_t{1} << colour;
+    }
+
+    // Counting sort.
+    std::uint32_t start[kColours + 1];
+    std::exclusive_scan(std::begin(count), std::end(count), start, 0u);
+    sorted_.resize(size);
+    for (std::size_t i = 0; i < size; ++i)
+        sorted_[start[colour_[i]]++] = begin[static_cast<std::ptrdiff_t>(i)];
+    std::copy(sorted_.begin(), sorted_.end(), begin);
+    for (int colour = 0; colour < kColours && count[colour] > 0; ++colour)
+        step.islands.colours.push_back(static_cast<std::uint32_t>(places.begin) + start[colour]);
 }
 
 }  // namespace tesserae

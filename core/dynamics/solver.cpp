@@ -51,26 +51,32 @@ double solve_normal(const Simulation& simulation, StepData& step, ContactRow& ro
     return change;
 }
 
-/// Friction last, so that no contact ends with more of it than its normal impulse allows. Every
-/// other iteration goes through the island backward: a load at one end of it then reaches the
-/// other in one iteration (a tower of ten leans 10 times less). The last one of solve_island() goes
-/// forward and that of relax_island() backward, which is best for towers listed from the ground.
-/// @return the largest change of a normal velocity in the last iteration [m/s]
+/// Friction last, so that no contact ends with more of it than its normal impulse allows.
+/// @return the change of the normal impulse [N s]
 template <NormalPass ContactRow::*kPass>
-double iterate(const Simulation& simulation, StepData& step, std::uint32_t begin,
-               std::uint32_t end) {
-    constexpr int kBackward = kPass == &ContactRow::solve ? 1 : 0;
-    const int last = simulation.settings.iterations - 1;
+double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
+    const double change = solve_normal(simulation, step, row, row.*kPass);
+    // Apart, and friction is 0 too?
+    if (change != 0 || row.normal_impulse > 0) solve_friction(simulation, step, row);
+    return change;
+}
+
+template <NormalPass ContactRow::*kPass>
+double sweep_rows(const Simulation& simulation, StepData& step, Range places, Sweep sweep) {
     double residual = 0;
-    for (int iteration = 0; iteration <= last; ++iteration)
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const bool backward = (last - iteration) % 2 == kBackward;
-            ContactRow& row = step.rows[backward ? begin + (end - 1 - i) : i];
-            const double change = solve_normal(simulation, step, row, row.*kPass);
-            if (change == 0 && row.normal_impulse == 0) continue;  // apart, and friction is 0 too
-            if (iteration == last) residual = std::max(residual, std::abs(change) / row.relax.mass);
-            solve_friction(simulation, step, row);
-        }
+    for (std::size_t i = places.begin; i < places.end; ++i) {
+        ContactRow& row = step.rows[sweep.backward ? places.begin + (places.end - 1 - i) : i];
+        const double change = solve_row<kPass>(simulation, step, row);
+        if (sweep.last && change != 0)
+            residual = std::max(residual, std::abs(change) / row.relax.mass);
+    }
+    return residual;
+}
+
+double iterate(const Simulation& simulation, StepData& step, Range places, Pass pass) {
+    double residual = 0;
+    for (int i = 0; i < simulation.settings.iterations; ++i)
+        residual = sweep_contacts(simulation, step, places, sweep_of(simulation, pass, i));
     return residual;
 }
 
@@ -92,34 +98,46 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
     }
 }
 
-void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Islands& islands = step.islands;
-    const std::uint32_t begin = islands.first[island], end = islands.first[island + 1];
-
-    // Set all rows up before the first impulse changes a velocity.
-    for (std::uint32_t i = begin; i < end; ++i) {
-        const std::uint32_t contact = islands.contacts[i];
+void make_rows(const Simulation& simulation, StepData& step, Range places) {
+    for (std::size_t i = places.begin; i < places.end; ++i) {
+        const std::uint32_t contact = step.islands.contacts[i];
         step.rows[i] = make_row(simulation, step, step.contacts[contact], step.impulses[contact]);
     }
+}
 
-    // Warm start.
-    for (std::uint32_t i = begin; i < end; ++i) {
+void warm_start(const Simulation& simulation, StepData& step, Range places) {
+    for (std::size_t i = places.begin; i < places.end; ++i) {
         const ContactRow& row = step.rows[i];
         apply_impulse(simulation, step, row, row.normal_impulse * row.normal + row.tangent_impulse);
     }
-    step.residual[island] = iterate<&ContactRow::solve>(simulation, step, begin, end);
 }
 
-void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Islands& islands = step.islands;
-    const std::uint32_t begin = islands.first[island], end = islands.first[island + 1];
-    if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] = iterate<&ContactRow::relax>(simulation, step, begin, end);
-    for (std::uint32_t i = begin; i < end; ++i) {
-        ContactImpulse& impulse = step.impulses[islands.contacts[i]];
+double sweep_contacts(const Simulation& simulation, StepData& step, Range places, Sweep sweep) {
+    return sweep.pass == Pass::kSolve
+               ? sweep_rows<&ContactRow::solve>(simulation, step, places, sweep)
+               : sweep_rows<&ContactRow::relax>(simulation, step, places, sweep);
+}
+
+void keep_impulses(StepData& step, Range places) {
+    for (std::size_t i = places.begin; i < places.end; ++i) {
+        ContactImpulse& impulse = step.impulses[step.islands.contacts[i]];
         impulse.normal = step.rows[i].normal_impulse;
         impulse.tangent = step.rows[i].tangent_impulse;
     }
+}
+
+void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    make_rows(simulation, step, places);
+    warm_start(simulation, step, places);
+    step.residual[island] = iterate(simulation, step, places, Pass::kSolve);
+}
+
+void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    if (simulation.settings.solver == Solver::kSoft)
+        step.residual[island] = iterate(simulation, step, places, Pass::kRelax);
+    keep_impulses(step, places);
 }
 
 }  // namespace tesserae

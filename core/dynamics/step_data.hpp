@@ -36,13 +36,24 @@ struct BodyPair {
 };
 
 /// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
-/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved:
-/// ascending (a, b, feature).
+/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved.
+///
+/// A small one is in ascending order of (a, b, feature). A large one is in order of colours, and in
+/// that order within each: no two contacts of a colour share a movable body, so that any number of
+/// threads may solve them at once and get the same bits. Its colours end at the places
+/// colours[first_colour[k]] to colours[first_colour[k + 1]]; what is left behind the last colour is
+/// solved one by one.
 struct Islands {
     std::vector<std::uint32_t> first = {0};
     std::vector<std::uint32_t> contacts;  ///< places in the list of contacts
+    std::vector<std::uint32_t> first_colour = {0};
+    std::vector<std::uint32_t> colours;  ///< places in `contacts`
 
     std::size_t size() const { return first.size() - 1; }
+    Range places(std::size_t island) const { return {first[island], first[island + 1]}; }
+    bool is_coloured(std::size_t island) const {
+        return first_colour[island] != first_colour[island + 1];
+    }
 };
 
 /// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:

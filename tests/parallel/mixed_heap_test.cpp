@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/dynamics/islands.hpp"
 #include "core/dynamics/world.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
@@ -43,8 +44,8 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
 }
 
 void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, int steps,
-                        const World& serial) {
-    for (int count : {1, 2, 3}) {
+                        const World& serial, const std::vector<int>& counts = {1, 2, 3}) {
+    for (const int count : counts) {
         Threads threads(count);
         ParallelWorld world(bodies, settings);
         threads.run([&] {
@@ -67,6 +68,28 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSoftSubsteps) {
     World serial(mixed_heap(), soft());
     for (int i = 0; i < 100; ++i) serial.step(1.0 / 80);
     expect_serial_bits(mixed_heap(), soft(), 100, serial);
+}
+
+/// A pile of 5^4 spheres put down touching, which is one island with enough contacts to be
+/// coloured.
+TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (const int axis : {0, 2, 3})
+        for (const double side : {-1.0, 1.0})
+            add(bodies, plane_type(side * Vec4::Unit(axis), -3, 0.5));
+    for (int i = 0; i < 1296; ++i)
+        add(bodies, sphere_type(0.5, 1 + i % 3, 0.5),
+            {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
+        PhysicsSettings settings = soft();
+        settings.solver = solver;
+        World serial(bodies, settings);
+        std::uint64_t contacts = 0;
+        for (int i = 0; i < 6; ++i) contacts = serial.step(1.0 / 80).contacts;
+        EXPECT_GT(contacts, 2 * kColouredFrom);
+        expect_serial_bits(bodies, settings, 6, serial, {1, 2, 3, 4, 7, 16});
+    }
 }
 
 /// Stacks of two boxes fall asleep, and spheres thrown along w wake some of them.

@@ -76,5 +76,54 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
     }
 }
 
+/// Body 0 is fixed, body 1 touches all others, and these touch at random.
+TEST(Islands, OfManyContactsAreSortedByColoursThatShareNoMovableBody) {
+    std::mt19937_64 engine(7);
+    Bodies bodies;
+    constexpr BodyId kCount = 700;
+    BodyType fixed = sphere_type(1);
+    fixed.fixed_position = fixed.fixed_rotation = true;
+    for (BodyId id = 0; id < kCount; ++id) add(bodies, id == 0 ? fixed : sphere_type(1));
+    StepData step;
+    for (BodyId a = 0; a < kCount; ++a)
+        for (BodyId b = a + 1; b < kCount; ++b)
+            if (a < 2 || engine() % 100 == 0) {
+                Contact contact;
+                contact.a = a, contact.b = b;
+                step.contacts.push_back(contact);
+            }
+    IslandBuilder builder;
+    builder.build(make_simulation(bodies, PhysicsSettings{}), step);
+
+    const Islands& islands = step.islands;
+    ASSERT_EQ(islands.size(), 1u);
+    ASSERT_GE(step.contacts.size(), kColouredFrom);
+    ASSERT_TRUE(islands.is_coloured(0));
+    std::vector<std::uint32_t> all = islands.contacts;
+    std::sort(all.begin(), all.end());
+    for (std::uint32_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i) << "a permutation";
+
+    std::size_t begin = 0;
+    for (const std::uint32_t end : islands.colours) {
+        ASSERT_LT(begin, end);
+        std::vector<bool> used(kCount, false);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Contact& contact = step.contacts[islands.contacts[i]];
+            for (const BodyId id : {contact.a, contact.b}) {
+                if (id == 0) continue;
+                ASSERT_FALSE(used[id]);
+                used[id] = true;
+            }
+            if (i > begin) {
+                ASSERT_LT(islands.contacts[i - 1], islands.contacts[i]) << "in their order";
+            }
+        }
+        begin = end;
+    }
+    // 64 colours hold 64 of body 1's contacts, 700 in all; those of the others fit.
+    EXPECT_EQ(islands.colours.size(), 64u);
+    EXPECT_EQ(step.contacts.size() - begin, 699u - 64u);
+}
+
 }  // namespace
 }  // namespace tesserae

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/dynamics/solver.hpp"
+
+namespace tesserae::parallel {
+
+/// core's solve_island() and relax_island() of a coloured island on all threads: colour by colour,
+/// the contacts of a colour at once, with the same bits. What is left over is solved by one thread.
+void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
+void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
+
+}  // namespace tesserae::parallel
