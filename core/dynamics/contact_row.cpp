@@ -34,7 +34,8 @@ void set_masses(const Simulation& simulation, const StepData& step, ContactRow& 
     const Vec4& n = row.normal;
     const double rounding = kNoResponse * (greatest_response(simulation.type_of(row.a)) +
                                            greatest_response(simulation.type_of(row.b)));
-    const double along = n.dot(both(n));
+    row.normal_response = both(n);
+    const double along = n.dot(row.normal_response);
     row.solve.mass = row.relax.mass = along > rounding ? 1 / along : 0;
 
     row.tangent_mass.setZero();

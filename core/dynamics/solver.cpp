@@ -22,42 +22,39 @@ void apply_impulse(const Simulation& simulation, StepData& step, const ContactRo
     apply_impulse(simulation, step, row.b, row.r_b, impulse);
 }
 
-/// The impulse that ends the slip, if friction allows it. Else the largest that it allows, against
-/// the slip: clamping the former would be against what turns into the slip by the bodies'
-/// responses, and a box that slides on its corners would push each aside instead of slowing down
-/// (by 24 % too little). A step against the slip itself ends where both are parallel.
-void solve_friction(const Simulation& simulation, StepData& step, ContactRow& row) {
-    if (row.friction == 0) return;
-    const Vec4 v = relative_velocity(step, row);
+/// The friction impulse for a relative velocity v: that which ends the slip, if friction allows it.
+/// Else the largest that it allows, against the slip: clamping the former would be against what
+/// turns into the slip by the bodies' responses, and a box that slides on its corners would push
+/// each aside instead of slowing down (by 24 % too little). A step against the slip itself ends
+/// where both are parallel.
+Vec4 friction_impulse(const ContactRow& row, const Vec4& v) {
     const Vec4 slip = v - row.normal.dot(v) * row.normal;
     const double most = row.friction * row.normal_impulse;
-    Vec4 impulse = row.tangent_impulse - row.tangent_mass * slip;
-    if (impulse.squaredNorm() > most * most)
-        impulse = clamped_to_ball(row.tangent_impulse - row.slide_mass * slip, most);
-    apply_impulse(simulation, step, row, impulse - row.tangent_impulse);
-    row.tangent_impulse = impulse;
+    const Vec4 impulse = row.tangent_impulse - row.tangent_mass * slip;
+    if (impulse.squaredNorm() <= most * most) return impulse;
+    return clamped_to_ball(row.tangent_impulse - row.slide_mass * slip, most);
 }
 
-/// @return the change of the normal impulse [N s]
-double solve_normal(const Simulation& simulation, StepData& step, ContactRow& row,
-                    const NormalPass& pass) {
-    const double v = row.normal.dot(relative_velocity(step, row));
-    const double impulse =
-        std::max(0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - v));
-    const double change = impulse - row.normal_impulse;
-    if (change == 0) return 0;
-    apply_impulse(simulation, step, row, change * row.normal);
-    row.normal_impulse = impulse;
-    return change;
-}
-
-/// Friction last, so that no contact ends with more of it than its normal impulse allows.
+/// The normal first and then friction, so that no contact ends with more of it than its normal
+/// impulse allows; what the normal impulse does to the slip is known from the row, so that the
+/// bodies' velocities are read and written once.
 /// @return the change of the normal impulse [N s]
 template <NormalPass ContactRow::*kPass>
 double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
-    const double change = solve_normal(simulation, step, row, row.*kPass);
-    // Apart, and friction is 0 too?
-    if (change != 0 || row.normal_impulse > 0) solve_friction(simulation, step, row);
+    const NormalPass& pass = row.*kPass;
+    const Vec4 v = relative_velocity(step, row);
+    const double normal = std::max(
+        0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - row.normal.dot(v)));
+    const double change = normal - row.normal_impulse;
+    if (change == 0 && normal == 0) return 0;  // apart, and friction is 0 too
+    row.normal_impulse = normal;
+    Vec4 impulse = change * row.normal;
+    if (row.friction > 0) {
+        const Vec4 tangent = friction_impulse(row, v + change * row.normal_response);
+        impulse += tangent - row.tangent_impulse;
+        row.tangent_impulse = tangent;
+    }
+    apply_impulse(simulation, step, row, impulse);
     return change;
 }
 

@@ -68,6 +68,7 @@ struct NormalPass {
 struct ContactRow {
     Vec4 normal;                ///< unit, from a to b
     Vec4 r_a, r_b;              ///< from the centres to the contact point [m]
+    Vec4 normal_response;       ///< change of the relative velocity by a unit impulse on n [1/kg]
     Mat4 tangent_mass;          ///< inverse of the response in the three tangent directions [kg]
     double slide_mass = 0;      ///< below the inverse of the largest of these responses [kg]
     Vec4 tangent_impulse;       ///< [N s], orthogonal to the normal
