@@ -142,8 +142,8 @@ class InTesserae : public PeerEngine {
 
     std::size_t count_;
     PhysicsSettings settings_;
+    parallel::Threads threads_{1};  ///< outlives the world's graph
     parallel::ParallelWorld world_;
-    parallel::Threads threads_{1};
     StepReport report_;
 };
 

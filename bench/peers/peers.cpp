@@ -81,6 +81,7 @@ class Run {
 
     double time() const { return quartiles_of(times_).median; }
     double ns_per_point() const { return 1e9 * time() / points_ / iterations_; }
+    double ns_per_touching() const { return 1e9 * time() / touching_ / iterations_; }
     double slope(const Run& fewer) const {
         return 1e9 * (time() / points_ - fewer.time() / fewer.points_) /
                (iterations_ - fewer.iterations_);
@@ -93,8 +94,9 @@ class Run {
         fmt::print("{},{},{},{},{:.3f},{:.3f},{:.3f},{:.1f},{:.1f},{:.1f},", scene_.name,
                    scene_.size(), name_, iterations_, points_ / bodies, touching_ / bodies,
                    1e3 * all.median, 100 * all.distance / all.median, ns_per_point(),
-                   1e9 * all.median / touching_ / iterations_);
-        fmt::print("{:.3f},", ns_per_point() / bullet.ns_per_point());
+                   ns_per_touching());
+        fmt::print("{:.3f},{:.3f},", ns_per_point() / bullet.ns_per_point(),
+                   ns_per_touching() / bullet.ns_per_touching());
         if (fewer)
             fmt::print("{:.1f},{:.3f},", slope(*fewer),
                        slope(*fewer) / bullet.slope(*fewer_of_bullet));
@@ -172,7 +174,8 @@ int main(int argc, char** argv) {
     fmt::print(
         "scene,bodies,engine,iterations,points_per_body,touching_per_body,ms_per_step,"
         "spread_percent,ns_per_point_iteration,ns_per_touching_iteration,ratio_to_bullet,"
-        "slope_ns,slope_ratio_to_bullet,penetration_mm,checked_penetration_mm,mean_speed_mm_s,"
+        "touching_ratio_to_bullet,slope_ns,slope_ratio_to_bullet,penetration_mm,checked_"
+        "penetration_mm,mean_speed_mm_s,"
         "bytes_per_body,pairs_percent,contacts_percent,islands_percent,rows_percent,"
         "iterations_percent,others_percent\n");
     compare(make_peers(all), arguments[0] == "box_wall" ? box_wall : sphere_pile, count);
