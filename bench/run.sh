@@ -1,22 +1,23 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds into build/bench, measures, and writes bench/results. The machine
 # should have nothing else to do; the load is noted in the results.
-#   bash bench/run.sh              all parts, ten to twenty minutes
+#   bash bench/run.sh              all parts, about an hour
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
 #   bash bench/run.sh extremes     stiff and extreme scenes
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
+#   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed extremes bullet)
+parts=(accuracy speed extremes bullet peers)
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | extremes | bullet) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | extremes | bullet]" >&2
+    case $1 in accuracy | speed | extremes | bullet | peers) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | extremes | bullet | peers]" >&2
         exit 2
         ;;
     esac
 fi
-install_packages "${packages[@]}" libbenchmark-dev libbullet-dev python3-matplotlib python3-numpy python3-pil
+install_packages "${packages[@]}" libbenchmark-dev libbullet-dev libode-dev python3-matplotlib python3-numpy python3-pil
 
 folder=$root/build/bench
 results=$root/bench/results
@@ -70,6 +71,18 @@ bullet() {
     head_of bullet "$1"
     cat "$raw/head.txt" "$raw/box_against_bullet.csv" >"$results/box_against_bullet.csv"
     return $status
+}
+
+peers() {
+    local scene count
+    for scene in sphere_pile box_wall; do
+        for count in 1000 10000; do
+            "$folder/bench/peers_double" $scene $count all
+            "$folder/bench/peers_float" $scene $count
+        done
+    done | awk 'NR == 1 || !/^scene,/' >"$raw/peers.csv"
+    head_of peers "$1"
+    cat "$raw/head.txt" "$raw/peers.csv" >"$results/peers.csv"
 }
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
