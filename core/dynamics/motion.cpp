@@ -90,10 +90,10 @@ bool outgrows_bounds(const Simulation& simulation, const StepData& step, Range b
         const auto id = static_cast<BodyId>(i);
         if (!simulation.type_of(id).bounded) continue;
         const Bounds& bounds = step.bounds[id];
-        const double r = reach(simulation, step, id, step.h);
-        if (((step.position[id].array() - r) < bounds.lower.array()).any() ||
-            ((step.position[id].array() + r) > bounds.upper.array()).any())
-            return true;
+        const Vec4 centre = 0.5 * (bounds.lower + bounds.upper);
+        const double radius = 0.5 * (bounds.upper[0] - bounds.lower[0]);
+        const double moved = (step.position[id] - centre).norm();
+        if (moved + reach(simulation, step, id, step.h) > radius) return true;
     }
     return false;
 }

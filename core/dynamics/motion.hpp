@@ -20,8 +20,8 @@ void integrate_velocities(const Simulation& simulation, StepData& step, Range bo
 /// the bodies can pass through each other.
 void update_bounds(const Simulation& simulation, StepData& step, Range bodies);
 
-/// Whether a body of the range, made faster by a contact, can leave its bounds in this sub-step, so
-/// that they and the pairs are to be found anew.
+/// Whether a body of the range, made faster by a contact, can leave the ball in its bounds in this
+/// sub-step, so that they and the pairs are to be found anew.
 bool outgrows_bounds(const Simulation& simulation, const StepData& step, Range bodies);
 
 }  // namespace tesserae

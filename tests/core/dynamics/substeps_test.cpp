@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/dynamics/motion.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -69,6 +70,29 @@ TEST(Substeps, ABulletDoesNotPassAThinWall) {
                             << start << " " << aside.transpose();
                     }
                 }
+}
+
+/// Pairs are found by the balls in the bounds: a body may not leave its own toward a corner either.
+TEST(Bounds, AreOutgrownInEveryDirectionAtTheSameDistance) {
+    Bodies bodies;
+    add(bodies, sphere_type(0.5), Vec4::Zero(), {4, 0, 0, 0});
+    PhysicsSettings settings;
+    settings.substeps = 4;
+    settings.gravity.setZero();
+    const Simulation simulation = make_simulation(bodies, settings);
+    StepData step;
+    begin_step(simulation, step, 1.0 / 60);
+    advance_first_half(simulation, step, {0, 1});
+    update_bounds(simulation, step, {0, 1});
+    const Vec4 start = step.position[0];
+    // It may move by its speed times three of the four sub-steps; the fourth is still to come.
+    const double slack = 4 * 0.75 / 60;
+    for (const Vec4& direction : {Vec4(1, 0, 0, 0), Vec4(0, 0, -1, 0), Vec4(0.5, 0.5, -0.5, 0.5)}) {
+        step.position[0] = start + (slack - 1e-9) * direction;
+        EXPECT_FALSE(outgrows_bounds(simulation, step, {0, 1}));
+        step.position[0] = start + (slack + 1e-9) * direction;
+        EXPECT_TRUE(outgrows_bounds(simulation, step, {0, 1})) << direction.transpose();
+    }
 }
 
 TEST(Substeps, MustBeAtLeastOne) {
