@@ -7,6 +7,7 @@
 
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/memory.hpp"
+#include "core/dynamics/settings.hpp"
 
 namespace tesserae::testing {
 
@@ -41,6 +42,15 @@ inline BodyType box_type(const Vec4& size, double mass = 1) {
     type.shape = box;
     type.mass = mass;
     return type;
+}
+
+/// The soft solver as README recommends it.
+inline PhysicsSettings soft_settings() {
+    PhysicsSettings settings;
+    settings.solver = Solver::kSoft;
+    settings.substeps = 4;
+    settings.iterations = 2;
+    return settings;
 }
 
 /// Adds one body, of a type of its own.

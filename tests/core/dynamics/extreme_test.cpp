@@ -12,14 +12,6 @@ namespace {
 
 using namespace testing;
 
-PhysicsSettings soft() {
-    PhysicsSettings settings;
-    settings.solver = Solver::kSoft;
-    settings.substeps = 4;
-    settings.iterations = 2;
-    return settings;
-}
-
 PhysicsSettings impulse() { return PhysicsSettings{}; }
 
 /// Unit boxes on each other on a floor at place[1].
@@ -50,18 +42,18 @@ constexpr double kSlopOfBox = 0.0025;
 
 TEST(Extreme, ALightBoxStandsOnOneAMillionTimesHeavier) {
     EXPECT_LT(moved(tower({1e6, 1}), impulse(), 2), kSlopOfBox);
-    EXPECT_LT(moved(tower({1e6, 1}), soft(), 2), kSlopOfBox);
+    EXPECT_LT(moved(tower({1e6, 1}), soft_settings(), 2), kSlopOfBox);
 }
 
 TEST(Extreme, AHeavyBoxStandsOnOneAHundredTimesLighterWithTheSoftSolver) {
-    EXPECT_LT(moved(tower({1, 100}), soft(), 4), 2 * kSlopOfBox);
+    EXPECT_LT(moved(tower({1, 100}), soft_settings(), 4), 2 * kSlopOfBox);
 }
 
 TEST(Extreme, FortyBoxesStand) {
     const Bodies bodies = tower(std::vector<double>(40, 1000.0));
     // It sways: the top by less than a quarter of a box.
     EXPECT_LT(moved(bodies, impulse(), 3), 0.25);
-    EXPECT_LT(moved(bodies, soft(), 3), 0.25);
+    EXPECT_LT(moved(bodies, soft_settings(), 3), 0.25);
 }
 
 TEST(Extreme, SizesFromAMillimetreToAKilometreRestInOneScene) {
@@ -74,19 +66,19 @@ TEST(Extreme, SizesFromAMillimetreToAKilometreRestInOneScene) {
         x += 1.5 * radius;
     }
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.0005);
-    EXPECT_LT(moved(bodies, soft(), 2), 0.005 * 0.0005);
+    EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.0005);
 }
 
 TEST(Extreme, AThousandTimesTheGravityPressesABoxNoDeeperThanItsSlop) {
-    PhysicsSettings settings = soft();
+    PhysicsSettings settings = soft_settings();
     settings.gravity = {0, -1e4, 0, 0};
     EXPECT_LT(moved(tower({1000}), settings, 2), kSlopOfBox);
 }
 
 TEST(Extreme, ATowerFarFromTheOriginStandsAsWellAsOneNearIt) {
     const std::vector<double> masses(5, 1000.0);
-    const double near = moved(tower(masses), soft(), 2);
-    const double far = moved(tower(masses, {1e5, -1e5, 1e5, 1e5}), soft(), 2);
+    const double near = moved(tower(masses), soft_settings(), 2);
+    const double far = moved(tower(masses, {1e5, -1e5, 1e5, 1e5}), soft_settings(), 2);
     // Coordinates are rounded to 1.5e-11 m there, and noise like that is what a tower settles from.
     EXPECT_LT(near, kSlopOfBox);
     EXPECT_LT(far, kSlopOfBox);
@@ -116,7 +108,7 @@ TEST(Extreme, ElasticSpheresKeepTheirEnergyForAHundredThousandSteps) {
 }
 
 TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
-    for (const PhysicsSettings& given : {impulse(), soft()}) {
+    for (const PhysicsSettings& given : {impulse(), soft_settings()}) {
         PhysicsSettings settings = given;
         settings.gravity.setZero();
         Bodies bodies;
@@ -148,7 +140,7 @@ TEST(Extreme, ACapsuleTenThousandTimesAsLongAsWideLiesStill) {
     add(bodies, type, {0, 0.01, 0, 0}, Vec4::Zero(), {}, exp(Bivector{0.25 * kPi}));
     // 0.005 of its radius is left alone.
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.01);
-    EXPECT_LT(moved(bodies, soft(), 2), 0.005 * 0.01);
+    EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.01);
 }
 
 }  // namespace

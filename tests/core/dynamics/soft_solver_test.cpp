@@ -12,20 +12,12 @@ namespace {
 
 using namespace testing;
 
-PhysicsSettings soft() {
-    PhysicsSettings settings;
-    settings.solver = Solver::kSoft;
-    settings.substeps = 4;
-    settings.iterations = 2;
-    return settings;
-}
-
 /// Two spheres that overlap by `depth`, without gravity.
 World overlapping(Solver solver, double depth) {
     Bodies bodies;
     add(bodies, sphere_type(0.5), Vec4::Zero());
     add(bodies, sphere_type(0.5), (1 - depth) * Vec4(1, 2, 0, 2) / 3);
-    PhysicsSettings settings = soft();
+    PhysicsSettings settings = soft_settings();
     settings.solver = solver;
     settings.gravity.setZero();
     return World(bodies, settings);
@@ -66,7 +58,7 @@ TEST(SoftSolver, BouncesToTheSameHeights) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 0, 0.8));
         add(bodies, sphere_type(0.5, 2, 0, 0.8), {0, 1.5, 0, 0});
-        PhysicsSettings settings = soft();
+        PhysicsSettings settings = soft_settings();
         settings.substeps = substeps;
         World world(bodies, settings);
         while (world.bodies().velocity[1][1] <= 0) world.step(1.0 / 240);
@@ -80,7 +72,7 @@ TEST(SoftSolver, SlidesAndRollsAsExactlyAsTheOther) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.3));
     add(bodies, sphere_type(0.5, 2, 0.3), {0, 0.5, 0, 0}, {0, 0, 2.16, 2.88});
-    World world(bodies, soft());
+    World world(bodies, soft_settings());
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     EXPECT_LT((world.bodies().velocity[1] - Vec4(0, 0, 1.62, 2.16)).norm(), 1e-11);
     EXPECT_NEAR(world.bodies().position[1][1], 0.5, 1e-11);
@@ -90,7 +82,7 @@ TEST(SoftSolver, HoldsATowerOfTenBoxes) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
     for (int i = 0; i < 10; ++i) add(bodies, box_type(Vec4::Ones(), 1000), {0, 0.5 + i, 0, 0});
-    World world(bodies, soft());
+    World world(bodies, soft_settings());
     for (int i = 0; i < 960; ++i) world.step(1.0 / 240);
     for (BodyId id = 1; id <= 10; ++id) {
         // Ten contacts that may each sink to the slop of 2.5 mm, and lean by that across a box.
@@ -105,7 +97,7 @@ TEST(SoftSolver, ReportsAResidualThatMoreIterationsLessen) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0));
         for (int i = 0; i < 10; ++i) add(bodies, sphere_type(0.5), {0, 0.5 + i, 0, 0});
-        PhysicsSettings settings = soft();
+        PhysicsSettings settings = soft_settings();
         settings.iterations = iterations;
         World world(bodies, settings);
         residual[iterations == 20] = world.step(1.0 / 240).residual;
