@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/contact/branchless.hpp"
+
 namespace tesserae {
 namespace {
 
@@ -93,9 +95,9 @@ bool clip_edge(const Corners& corners, int start, int end, Crossing& in, Crossin
     in = {0, -1, 0}, out = {1, -1, 0};
     // One branch each, and seldom the other way than the last time.
     for (int k = 0; k < 3; ++k) {
-        if ((std::abs(x0[k]) > corners.reach[k]) & (enter[k] > in.t))
+        if (both(std::abs(x0[k]) > corners.reach[k], enter[k] > in.t))
             in = {enter[k], k, side_of(x0[k])};
-        if ((std::abs(x1[k]) > corners.reach[k]) & (leave[k] < out.t))
+        if (both(std::abs(x1[k]) > corners.reach[k], leave[k] < out.t))
             out = {leave[k], k, side_of(x1[k])};
     }
     return in.t <= out.t;

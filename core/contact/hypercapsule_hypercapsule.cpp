@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/contact/branchless.hpp"
 #include "core/contact/capsule_core.hpp"
 
 namespace tesserae {
@@ -67,12 +68,12 @@ Closest closest_points(const Cores& cores) {
     Vec4 gap = cores.gap(s, t);
     const double along_a = a.axis.dot(gap), along_b = b.axis.dot(gap);
     const bool inside_a = std::abs(s) < a.half, inside_b = std::abs(t) < b.half;
-    const bool across_a = inside_a | (along_a * s < 0);
+    const bool across_a = either(inside_a, along_a * s < 0);
     const double part_a = across_a ? along_a : 0;
-    const bool across_b = inside_b | ((along_b - cores.cosine * part_a) * t > 0);
-    const double part_b = across_b & !across_a ? along_b : 0;
+    const bool across_b = either(inside_b, (along_b - cores.cosine * part_a) * t > 0);
+    const double part_b = both(across_b, !across_a) ? along_b : 0;
     gap -= part_a * a.axis + part_b * b.axis;
-    if (across_b & across_a & (cores.sine2 > 0)) {
+    if (both(both(across_b, across_a), cores.sine2 > 0)) {
         const double sine = std::sqrt(cores.sine2), along = cores.across.dot(gap) / sine;
         if (std::abs(along) <= kCoreRounding * cores.length()) gap -= along / sine * cores.across;
     }

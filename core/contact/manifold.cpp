@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "core/contact/branchless.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {
@@ -61,8 +62,8 @@ class Reduction {
         for (std::size_t i = 0; i < points.size(); ++i)
             separation[i] = points[i].separation, feature[i] = points[i].feature;
         order_ = sorted(points.size(), [&](std::size_t i, std::size_t j) {
-            return bool((separation[i] < separation[j]) |
-                        ((separation[i] == separation[j]) & (feature[i] < feature[j])));
+            return either(separation[i] < separation[j],
+                          both(separation[i] == separation[j], feature[i] < feature[j]));
         });
         const Vec4 deepest = points[order_[0]].point;
         for (std::size_t i = 0; i < 4 * fours_; ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -96,18 +97,22 @@ void require_finite(const Simulation& simulation, const StepData& step) {
 }
 
 void end_substep(const Simulation& simulation, StepData& step) {
-    std::vector<ContactImpulse> next;
-    next.reserve(step.impulses.size());
+    std::vector<ContactImpulse> own, kept, all;
+    own.reserve(step.impulses.size());
     for (const ContactImpulse& impulse : step.impulses)
-        if (impulse.normal > 0) next.push_back(impulse);
-    if (!step.asleep.empty()) {
-        const auto own = static_cast<std::ptrdiff_t>(next.size());
+        if (impulse.normal > 0) own.push_back(impulse);
+    if (!step.asleep.empty())
         for (const ContactImpulse& impulse : last_impulses(simulation, step))
-            if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) next.push_back(impulse);
-        std::inplace_merge(next.begin(), next.begin() + own, next.end(),
-                           [](const auto& i, const auto& j) { return key_of(i) < key_of(j); });
+            if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) kept.push_back(impulse);
+    if (kept.empty()) {
+        step.recalled = std::move(own);
+        return;
     }
-    step.recalled = std::move(next);
+    // Not std::inplace_merge: its buffer does not heed the alignment of vectors.
+    all.reserve(own.size() + kept.size());
+    std::merge(own.begin(), own.end(), kept.begin(), kept.end(), std::back_inserter(all),
+               [](const auto& i, const auto& j) { return key_of(i) < key_of(j); });
+    step.recalled = std::move(all);
 }
 
 StepReport commit_step(Simulation& simulation, StepData& step) {
