@@ -52,8 +52,8 @@ class SortAndSweep {
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
     Vec4 origin_;                ///< lower corner of all bounds [m]
     std::vector<Level> levels_;  ///< ascending
-    std::vector<Entry>
-        entries_;  ///< of the bounded ones, sorted by level, cell, is_finer, lower, id
+    /// Of the bounded ones, ascending by (level, cell, is_finer, lower, id).
+    std::vector<Entry> entries_;
     ChunkedList<Entry> entry_lists_;
     ChunkedList<BodyPair> pair_lists_, unbounded_lists_;
     std::vector<BodyPair> found_, with_unbounded_;

@@ -15,8 +15,9 @@ constexpr std::uint64_t kStateBytes = (4 + 8 + 4 + 6) * sizeof(double);
 /// States alive at once: the scene's, the world's before and after a step, two stored steps between
 /// which a frame lies, and the frame's.
 constexpr std::uint64_t kStates = 6;
-/// Contacts, bounds, pairs and islands: about eight contacts a body of a dense pile.
-constexpr std::uint64_t kStepBytes = 8 * 200;
+/// Of a step, for a movable body: bounds, pairs, contacts and rows, with what the lists have spare.
+/// Measured in piles of 10^4: a sphere with its 3 contact points, a box with 16 (bench, peers).
+constexpr std::uint64_t kSphereStepBytes = 4'000, kStepBytes = 14'000;
 /// A body's bounds in the picture's hierarchy and lists.
 constexpr std::uint64_t kPictureBytes = 300;
 /// The program, its libraries and their buffers.
@@ -112,10 +113,11 @@ void decide_picture(const Scene& scene, Plan& plan) {
 Plan make_plan(const Scene& scene, int threads) {
     Plan plan;
     plan.bodies = scene.bodies.size();
-    plan.movable_bodies = count_if_type(scene.bodies, [&](std::uint32_t type) {
+    const auto is_movable = [&](std::uint32_t type) {
         const BodyType& t = scene.bodies.types[type];
         return is_bounded(t.shape) && !(t.fixed_position && t.fixed_rotation);
-    });
+    };
+    plan.movable_bodies = count_if_type(scene.bodies, is_movable);
     plan.moves = any_motion(scene);
     plan.steps = step_count(scene);
     plan.frames = frame_count(scene);
@@ -127,9 +129,14 @@ Plan make_plan(const Scene& scene, int threads) {
     const std::uint64_t rays = r.samples == 1 ? 1 : r.samples + 1;
     plan.view_rays = pixels * rays * plan.frames;
     const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;
-    plan.memory_bytes = kProgramBytes + scene.source.size() + scene.effective.size() +
-                        plan.bodies * (kStates * kStateBytes + kPictureBytes) +
-                        plan.movable_bodies * kStepBytes + 4 * threads * tile * kPixelBytes;
+    const std::uint64_t movable_spheres = count_if_type(scene.bodies, [&](std::uint32_t type) {
+        return is_movable(type) &&
+               std::holds_alternative<Hypersphere>(scene.bodies.types[type].shape);
+    });
+    plan.memory_bytes =
+        kProgramBytes + scene.source.size() + scene.effective.size() +
+        plan.bodies * (kStates * kStateBytes + kPictureBytes) + movable_spheres * kSphereStepBytes +
+        (plan.movable_bodies - movable_spheres) * kStepBytes + 4 * threads * tile * kPixelBytes;
     if (plan.moves) plan.trajectory_bytes = 2 * plan.frames * plan.bodies * kStateBytes;
 
     decide_physics(scene, plan);

@@ -14,12 +14,14 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "tests/error_of.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tesserae::render {
 namespace {
 
 namespace fs = std::filesystem;
+using tesserae::testing::error_of;
 
 class FileWriterTest : public ::testing::Test {
   protected:
@@ -31,16 +33,6 @@ std::string content_of(const fs::path& file) {
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();
-}
-
-/// The error that a call throws, empty if none.
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const RunError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 /// Exit status of a child process that runs `work`, negative the signal that ended it.
@@ -107,7 +99,7 @@ TEST_F(FileWriterTest, RefusesASecondWriter) {
     FileWriter writer(path);
     writer.write("first", 5);
     const int status = status_of_child([&] {
-        const std::string error = error_of([&] { FileWriter second(path); });
+        const std::string error = error_of<RunError>([&] { FileWriter second(path); });
         return error == path.string() + ": is being written by another process" ? 7 : 1;
     });
     EXPECT_EQ(status, 7);
@@ -141,8 +133,8 @@ TEST_F(FileWriterTest, AFullDiskLeavesNothing) {
             const auto write = [&] {
                 for (int i = 0; i < 1000; ++i) writer.write(bytes.data(), bytes.size());
             };
-            const std::string first = error_of(write);
-            const std::string last = error_of([&] { writer.finish(); });
+            const std::string first = error_of<RunError>(write);
+            const std::string last = error_of<RunError>([&] { writer.finish(); });
             const bool named =
                 last.find(path.string()) == 0 && last.find("File too large") != std::string::npos;
             // Buffered bytes fail in finish(); others at once, and finish() repeats it.
@@ -171,7 +163,7 @@ TEST_F(FileWriterTest, NamesThePathAndTheReason) {
         {"/proc/file", "No such file or directory"},
     };
     for (const auto& [path, reason] : cases) {
-        const std::string error = error_of([&, p = path] { write_file(p, "content"); });
+        const std::string error = error_of<RunError>([&, p = path] { write_file(p, "content"); });
         EXPECT_EQ(error.find(path.string() + ": "), 0u) << error;
         EXPECT_NE(error.find(reason), std::string::npos) << error;
     }
@@ -185,8 +177,8 @@ TEST_F(FileWriterTest, AFailedRenameLeavesNothing) {
         FileWriter writer(path);
         writer.write("x", 1);
         fs::create_directory(path);
-        error = error_of([&] { writer.finish(); });
-        EXPECT_EQ(error_of([&] { writer.finish(); }), error);
+        error = error_of<RunError>([&] { writer.finish(); });
+        EXPECT_EQ(error_of<RunError>([&] { writer.finish(); }), error);
     }
     EXPECT_NE(error.find("cannot be renamed"), std::string::npos) << error;
     EXPECT_TRUE(fs::is_directory(path));
@@ -200,7 +192,7 @@ TEST_F(FileWriterTest, ManyWritersOfOneFileLeaveOneWholeFile) {
         if (::fork() == 0) {
             const std::string bytes(100'000, static_cast<char>('a' + child));
             for (int written = 0; written < 20;) {
-                const std::string error = error_of([&] { write_file(path, bytes); });
+                const std::string error = error_of<RunError>([&] { write_file(path, bytes); });
                 written += error.empty();
                 if (!error.empty() && error.find("by another process") == std::string::npos)
                     ::_exit(1);

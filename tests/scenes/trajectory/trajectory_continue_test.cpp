@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "tests/error_of.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
@@ -14,6 +15,7 @@ namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
+using tesserae::testing::error_of;
 
 constexpr std::size_t kBodies = 9;
 constexpr std::uint64_t kRows = 40;
@@ -32,15 +34,6 @@ std::string content_of(const fs::path& file) {
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();
-}
-
-std::string refusal_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return {};
 }
 
 class TrajectoryContinue : public ::testing::Test {
@@ -141,7 +134,7 @@ TEST_F(TrajectoryContinue, RefusesAnotherMotionOtherStepsAndLess) {
     const std::string before = content_of(path_);
     const auto refused = [&](const TrajectoryHeader& header, std::vector<std::uint64_t> steps) {
         const std::string error =
-            refusal_of([&] { TrajectoryWriter(path_, header, std::move(steps), false); });
+            error_of<InputError>([&] { TrajectoryWriter(path_, header, std::move(steps), false); });
         EXPECT_EQ(error.find(path_.string() + ": "), 0u) << error;
         EXPECT_NE(error.find("--overwrite"), std::string::npos) << error;
         return error;

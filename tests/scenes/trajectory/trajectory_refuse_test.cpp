@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "core/error.hpp"
+#include "tests/error_of.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -17,6 +18,7 @@ namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
+using tesserae::testing::error_of;
 
 class TrajectoryRefuse : public ::testing::Test {
   protected:
@@ -33,16 +35,6 @@ class TrajectoryRefuse : public ::testing::Test {
     const testing::TemporaryFolder folder_{"trajectory"};
     const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
-
-template <class Error>
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
 
 /// A dataset of the extents, chunked where `chunk` is not 0, empty.
 void make_dataset(hid_t file, const char* name, hid_t type, std::vector<hsize_t> extent,

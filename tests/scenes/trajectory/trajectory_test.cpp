@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "tests/error_of.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
@@ -24,6 +25,7 @@ namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
+using tesserae::testing::error_of;
 
 class TrajectoryTest : public ::testing::Test {
   protected:
@@ -44,16 +46,6 @@ int status_of_child(const std::function<int()>& work) {
     int status = 0;
     ::waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
-
-template <class Error>
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
 }
 
 void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_t bodies) {
