@@ -1,0 +1,50 @@
+#include "render/ray_scene.hpp"
+
+#include <limits>
+
+namespace tesserae::render {
+namespace {
+
+constexpr Cone kLine = {0, 1};
+
+}  // namespace
+
+RayScene::RayScene(const PlacedBodies& placed, const Settings& settings)
+    : placed_(placed), settings_(settings), tree_(placed.bodies) {
+    for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
+        if (placed.bodies[i].radius == std::numeric_limits<double>::infinity())
+            unbounded_.push_back(i);
+}
+
+Hit RayScene::nearest(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
+                      FrameStats& stats) const {
+    Hit hit;
+    const auto visit = [&](std::uint32_t body) {
+        if (body == on) return true;
+        const double t = hit_distance(placed_, body, origin, direction, limit, settings_, stats);
+        if (t < hit.distance || (t == hit.distance && t < kMiss && body < hit.body)) {
+            hit = {t, body};
+            limit = t;
+        }
+        return true;
+    };
+    for (const std::uint32_t body : unbounded_) visit(body);
+    tree_.for_each_in_cone(origin, direction, kLine, visit);
+    return hit;
+}
+
+bool RayScene::is_blocked(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
+                          FrameStats& stats) const {
+    bool blocked = false;
+    const auto clears = [&](std::uint32_t body) {
+        blocked = body != on &&
+                  hit_distance(placed_, body, origin, direction, limit, settings_, stats) < kMiss;
+        return !blocked;
+    };
+    for (const std::uint32_t body : unbounded_)
+        if (!clears(body)) return true;
+    tree_.for_each_in_cone(origin, direction, kLine, clears);
+    return blocked;
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/intersect.hpp"
+#include "render/shadow_tree.hpp"
+
+namespace tesserae::render {
+
+/// The bodies as rays in any direction of 4D meet them: shadow and bounce rays, which leave the
+/// camera's hyperplane. Whole bodies, not their slices.
+class RayScene {
+  public:
+    static constexpr std::uint32_t kNoBody = ~std::uint32_t{0};
+
+    /// @param placed, settings   must outlive it
+    RayScene(const PlacedBodies& placed, const Settings& settings);
+
+    /// The nearest body that a ray meets no farther than `limit` [m]; equal distances go to the
+    /// lower id. The origin is relative to the camera, the direction unit, both in world axes.
+    /// @param on   a body left out, or kNoBody: a ray that leaves a convex body outward never meets
+    ///             it again, so that no origin needs to be moved off its surface
+    Hit nearest(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
+                FrameStats& stats) const;
+
+    /// Whether any body but `on` is met no farther than `limit` [m].
+    bool is_blocked(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
+                    FrameStats& stats) const;
+
+  private:
+    const PlacedBodies& placed_;
+    const Settings& settings_;
+    ShadowTree tree_;
+    std::vector<std::uint32_t> unbounded_;
+};
+
+}  // namespace tesserae::render
