@@ -52,6 +52,11 @@ struct CameraDescription {
     Vec4 up = Vec4::UnitY();
     Vec4 fourth = Vec4::UnitW();  ///< the axis that the camera does not see
     double field_of_view = 50;    ///< vertical [degrees]
+    double aperture = 0;          ///< radius of the lens [m]; 0 is a pinhole
+    double focus_distance = 0;    ///< along the forward axis [m]; 0 is that of look_at
+    double shutter = 0;           ///< how long it is open, from the frame's time on [frames]
+    double slice_thickness = 0;   ///< range along the fourth axis, about the slice [m]
+    int slices = 1;               ///< 1: the range is averaged; more: so many slices side by side
 };
 
 enum class Intersector { kTrace, kAnalytic };

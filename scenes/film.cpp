@@ -108,8 +108,11 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             progress.start_at(++report.kept);
             continue;
         }
-        const render::Picture picture = {poses.at(info.frame), scene.appearance, scene.materials,
-                                         scene.camera,         scene.lights,     scene.render};
+        const render::CameraDescription camera =
+            camera_at(scene.camera, scene.camera_keys, info.time);
+        const render::Picture picture = {poses.at(info.frame), scene.appearance,
+                                         scene.materials,      camera,
+                                         scene.lights,         scene.render};
         report.stats += render::render_frame(picture, info, exr, report.preview, stop_requested());
         ++report.rendered;
         progress.update(i + 1);

@@ -9,6 +9,7 @@
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/settings.hpp"
 #include "render/description.hpp"
+#include "scenes/camera_path.hpp"
 
 namespace tesserae::scenes {
 
@@ -28,7 +29,8 @@ struct Scene {
     std::vector<render::Appearance> appearance;  ///< by body type
     std::vector<NamedBodies> names;              ///< ascending, covering all bodies
     std::vector<render::Material> materials;
-    render::CameraDescription camera;
+    render::CameraDescription camera;    ///< where no key moves it
+    std::vector<CameraKey> camera_keys;  ///< ascending in time
     render::Lights lights;
     render::Settings render;
 

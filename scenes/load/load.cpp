@@ -101,6 +101,7 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     load_camera(root, origin, scene, out);
     load_lights(root, origin, scene, out);
     load_render(root, origin, scene, out);
+    require_view(scene, origin);
 
     scene.hash = hex_hash(out.text());
     scene.motion_hash = hex_hash(motion_part(out.text()));

@@ -7,9 +7,6 @@
 namespace tesserae::scenes {
 namespace {
 
-/// Sine of the angle below which camera directions count as parallel; Camera's own bound is lower.
-constexpr double kParallel = 1e-7;
-
 constexpr Interval kUnit{0, 1};
 constexpr Interval kNotNegative{0, kLargest};
 
@@ -50,56 +47,6 @@ render::Material load_material(TableReader& reader, EffectiveWriter& out) {
     return m;
 }
 
-/// What is left of `v` orthogonal to unit vectors that are orthogonal to each other.
-Vec4 orthogonal_part(const Vec4& v, const Vec4& first, const Vec4& second) {
-    const Vec4 unit = stable_normalized(v);
-    return unit - unit.dot(first) * first - unit.dot(second) * second;
-}
-
-void require_frame(TableReader& reader, const render::CameraDescription& c) {
-    const Vec4 view = c.look_at - c.position;
-    if (view.isZero(0)) {
-        const char* key = reader.has("look_at") ? "look_at" : "position";
-        reader.fail(key, "position and look_at must differ");
-    }
-    const Vec4 forward = stable_normalized(view);
-    const Vec4 fourth = orthogonal_part(c.fourth, forward, Vec4::Zero());
-    if (!(fourth.norm() > kParallel))
-        reader.fail(
-            reader.has("fourth") || !reader.has("look_at") ? "fourth" : "look_at",
-            fmt::format("fourth = {} is parallel to the forward direction; expected another "
-                        "direction",
-                        toml_text(c.fourth)));
-    if (!(orthogonal_part(c.up, forward, fourth.normalized()).norm() > kParallel))
-        reader.fail(reader.has("up") || !reader.has("look_at") ? "up" : "look_at",
-                    fmt::format("up = {} lies in the plane of the forward direction and fourth; "
-                                "expected another direction",
-                                toml_text(c.up)));
-}
-
-bool read_view(TableReader& reader, render::CameraDescription& camera) {
-    bool any = reader.read("position", camera.position, Rule::kFinite);
-    any |= reader.read("look_at", camera.look_at, Rule::kFinite);
-    any |= reader.read("up", camera.up, Rule::kNonZero);
-    any |= reader.read("fourth", camera.fourth, Rule::kNonZero);
-    any |= reader.read("field_of_view", camera.field_of_view, Interval{0, 180, true, true});
-    return any;
-}
-
-void check_camera_keys(TableReader& reader, const Origin& origin,
-                       render::CameraDescription camera) {
-    const auto keys = reader.tables("key");
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        TableReader key(*keys[i], origin, fmt::format("camera key {}", i));
-        double time = 0;
-        if (key.require("time", "expected a time in s")) key.read("time", time, Interval{});
-        const bool any = read_view(key, camera);
-        key.finish();
-        if (!any) key.fail_here("expected position, look_at, up, fourth or field_of_view");
-        key.fail_here("camera keys are not yet built");
-    }
-}
-
 }  // namespace
 
 MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& scene,
@@ -117,38 +64,6 @@ MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& s
                         fmt::format("is the name of material {} already", known->second - 1));
     }
     return numbers;
-}
-
-void load_camera(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out) {
-    render::CameraDescription& camera = scene.camera;
-    double aperture = 0, focus_distance = 0, shutter = 0, slice_thickness = 0;
-    int slices = 1;
-    if (const auto* table = root.table("camera")) {
-        TableReader reader(*table, origin, "[camera]");
-        read_view(reader, camera);
-        const auto unbuilt = [&](const char* key, double& value, Interval interval) {
-            if (reader.read(key, value, interval)) require_built(reader, key, value == 0);
-        };
-        unbuilt("aperture", aperture, kNotNegative);
-        unbuilt("focus_distance", focus_distance, kNotNegative);
-        unbuilt("shutter", shutter, kUnit);
-        unbuilt("slice_thickness", slice_thickness, kNotNegative);
-        if (reader.read("slices", slices, 1, 1000)) require_built(reader, "slices", slices == 1);
-        check_camera_keys(reader, origin, camera);
-        reader.finish();
-        require_frame(reader, camera);
-    }
-    out.table("[camera]");
-    out.key("position", camera.position);
-    out.key("look_at", camera.look_at);
-    out.key("up", camera.up);
-    out.key("fourth", camera.fourth);
-    out.key("field_of_view", camera.field_of_view);
-    out.key("aperture", aperture);
-    out.key("focus_distance", focus_distance);
-    out.key("shutter", shutter);
-    out.key("slice_thickness", slice_thickness);
-    out.key("slices", std::int64_t{slices});
 }
 
 namespace {

@@ -200,8 +200,17 @@ const std::vector<Broken>& broken_scenes() {
         {"[[material]]\nname = \"a\"\nkind = \"glass\"\n", "3:8", {"not yet"}},
         {"[[material]]\nname = \"a\"\nior = 1\n", "3:7", {"> 1"}},
         {"[camera]\naperture = 0.1\n", "2:12", {"not yet"}},
-        {"[camera]\n[[camera.key]]\ntime = 1\nup = [0, 1, 0, 0]\n", "2:1", {"not yet"}},
+
         {"[camera]\n[[camera.key]]\nup = [0, 1, 0, 0]\n", "2:1", {"time is missing"}},
+        {"[camera]\n[[camera.key]]\ntime = 1\n", "2:1", {"expected position, look_at, up"}},
+        {"[camera]\n[[camera.key]]\ntime = 1\nup = [0, 1, 0, 0]\n"
+         "[[camera.key]]\ntime = 1\nup = [0, 1, 0, 0]\n",
+         "6:8",
+         {"after the last key's, 1 s"}},
+        {"[camera]\n[[camera.key]]\ntime = 1\nup = [0, 1, 0, 0]\n"
+         "[[camera.key]]\ntime = 2\nup = [0, -2, 0, 0]\n",
+         "7:6",
+         {"opposite to the last key's"}},
         {"[[light]]\ntype = \"point\"\nposition = [0, 1, 0, 0]\n", "2:8", {"not yet"}},
         {"[render]\nintegrator = \"path\"\n", "2:14", {"not yet"}},
         {"[render]\nbounces = 2\n", "2:11", {"not yet"}},

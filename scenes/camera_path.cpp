@@ -1,0 +1,100 @@
+#include "scenes/camera_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tesserae::scenes {
+namespace {
+
+/// Points and numbers: straight lines.
+struct Flat {
+    template <class T>
+    static T way(const T& from, const T& to) {
+        return to - from;
+    }
+    template <class T>
+    static T moved(const T& from, const T& way) {
+        return from + way;
+    }
+};
+
+/// Unit vectors: great arcs.
+struct Sphere {
+    /// The tangent at `from` that points to `to`, as long as the arc.
+    static Vec4 way(const Vec4& from, const Vec4& to) {
+        const Vec4 across = to - from.dot(to) * from;
+        const double sine = across.norm();
+        if (sine == 0) return Vec4::Zero();
+        return std::atan2(sine, from.dot(to)) / sine * across;
+    }
+    static Vec4 moved(const Vec4& from, const Vec4& way) {
+        const double arc = way.norm();
+        if (arc == 0) return from;
+        return (std::cos(arc) * from + std::sin(arc) / arc * way).normalized();
+    }
+};
+
+template <class T>
+struct Knot {
+    double time;
+    T value;
+};
+
+bool is_zero(double v) { return v == 0; }
+bool is_zero(const Vec4& v) { return v.isZero(0); }
+
+/// Change per second at knot i.
+template <class Space, class T>
+T slope(const std::vector<Knot<T>>& knots, std::size_t i) {
+    const auto rate = [&](std::size_t to) -> T {
+        return Space::way(knots[i].value, knots[to].value) / (knots[to].time - knots[i].time);
+    };
+    if (i == 0) return rate(1);
+    if (i + 1 == knots.size()) return rate(i - 1);
+    const T before = rate(i - 1), after = rate(i + 1);
+    if (is_zero(before) || is_zero(after)) return T(0 * before);
+    const double h0 = knots[i].time - knots[i - 1].time, h1 = knots[i + 1].time - knots[i].time;
+    return (h1 * before + h0 * after) / (h0 + h1);
+}
+
+template <class Space, class T>
+T value_at(const std::vector<Knot<T>>& knots, double time) {
+    const auto next = std::upper_bound(knots.begin(), knots.end(), time,
+                                       [](double t, const Knot<T>& k) { return t < k.time; });
+    if (next == knots.begin()) return knots.front().value;
+    if (next == knots.end()) return knots.back().value;
+    const auto i = static_cast<std::size_t>(next - knots.begin()) - 1;
+    const Knot<T>&from = knots[i], &to = knots[i + 1];
+    const double h = to.time - from.time, t = (time - from.time) / h;
+    T points[] = {from.value, Space::moved(from.value, T(h / 3 * slope<Space>(knots, i))),
+                  Space::moved(to.value, T(-h / 3 * slope<Space>(knots, i + 1))), to.value};
+    for (int count = 3; count > 0; --count)
+        for (int k = 0; k < count; ++k)
+            points[k] = Space::moved(points[k], T(t * Space::way(points[k], points[k + 1])));
+    return points[0];
+}
+
+template <class Space, class T>
+void move(T& value, std::span<const CameraKey> keys, std::optional<T> CameraKey::*part,
+          double time) {
+    std::vector<Knot<T>> knots;
+    for (const CameraKey& key : keys)
+        if (key.*part) knots.push_back({key.time, *(key.*part)});
+    if (!knots.empty()) value = value_at<Space>(knots, time);
+}
+
+}  // namespace
+
+render::CameraDescription camera_at(const render::CameraDescription& still,
+                                    std::span<const CameraKey> keys, double time) {
+    render::CameraDescription camera = still;
+    move<Flat>(camera.position, keys, &CameraKey::position, time);
+    move<Flat>(camera.look_at, keys, &CameraKey::look_at, time);
+    move<Sphere>(camera.up, keys, &CameraKey::up, time);
+    move<Sphere>(camera.fourth, keys, &CameraKey::fourth, time);
+    move<Flat>(camera.field_of_view, keys, &CameraKey::field_of_view, time);
+    return camera;
+}
+
+}  // namespace tesserae::scenes
