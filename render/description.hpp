@@ -57,6 +57,8 @@ struct CameraDescription {
     double shutter = 0;           ///< how long it is open, from the frame's time on [frames]
     double slice_thickness = 0;   ///< range along the fourth axis, about the slice [m]
     int slices = 1;               ///< 1: the range is averaged; more: so many slices side by side
+
+    friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
 };
 
 enum class Intersector { kTrace, kAnalytic };

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "render/copied_frame.hpp"
 #include "render/file/file_writer.hpp"
 #include "render/file/image_info.hpp"
 #include "scenes/load/effective.hpp"
@@ -59,6 +60,25 @@ std::string id_names(const Scene& scene) {
     return names.dump();
 }
 
+/// A finished frame and what decided its pixels. The next frame may look the same: a still camera
+/// over a scene at rest.
+struct Shown {
+    std::vector<Vec4> position;
+    std::vector<Rotor> rotor;
+    render::CameraDescription camera;
+    render::FrameFiles files;
+
+    bool is_same_as(const Scene& scene, const Bodies& bodies,
+                    const render::CameraDescription& other) const {
+        if (position.empty() || !(camera == other)) return false;
+        for (BodyId id = 0; id < bodies.size(); ++id)
+            if (scene.appearance[bodies.type[id]].visible &&
+                (position[id] != bodies.position[id] || !(rotor[id] == bodies.rotor[id])))
+                return false;
+        return true;
+    }
+};
+
 }  // namespace
 
 void create_folder(const fs::path& folder) {
@@ -97,24 +117,33 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     info.program_version = TESSERAE_VERSION;
     info.id_names = id_names(scene);
 
+    Shown shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         info.frame = frames[i];
         info.time = frame_instant(scene, frames[i]).time;
         const std::string stem = fmt::format("{}.{:04}", scene.name, info.frame);
-        const fs::path exr = report.frames / (stem + ".exr");
-        report.preview = folder / "preview" / (stem + ".png");
-        if (is_done(scene, exr, report.preview, overwrite)) {
+        const render::FrameFiles files = {report.frames / (stem + ".exr"),
+                                          folder / "preview" / (stem + ".png")};
+        report.preview = files.preview;
+        if (is_done(scene, files.exr, files.preview, overwrite)) {
             progress.start_at(++report.kept);
             continue;
         }
+        const Bodies& bodies = poses.at(info.frame);
         const render::CameraDescription camera =
             camera_at(scene.camera, scene.camera_keys, info.time);
-        const render::Picture picture = {poses.at(info.frame), scene.appearance,
-                                         scene.materials,      camera,
-                                         scene.lights,         scene.render};
-        report.stats += render::render_frame(picture, info, exr, report.preview, stop_requested());
-        ++report.rendered;
+        const render::Picture picture = {bodies, scene.appearance, scene.materials,
+                                         camera, scene.lights,     scene.render};
+        if (shown.is_same_as(scene, bodies, camera)) {
+            render::copy_frame(shown.files, picture, info, files);
+            ++report.copied;
+        } else {
+            report.stats +=
+                render::render_frame(picture, info, files.exr, files.preview, stop_requested());
+            ++report.rendered;
+            shown = {bodies.position, bodies.rotor, camera, files};
+        }
         progress.update(i + 1);
     }
     report.seconds =

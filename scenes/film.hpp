@@ -10,7 +10,9 @@ namespace tesserae::scenes {
 
 /// What filming did.
 struct FilmReport {
-    int rendered = 0, kept = 0;
+    int rendered = 0;
+    int copied = 0;  ///< from the frame before, which looks the same
+    int kept = 0;    ///< there already
     render::FrameStats stats;
     double seconds = 0;
     std::filesystem::path frames, preview;  ///< folder of the frames; the last frame's preview

@@ -1,5 +1,6 @@
 #include "render/file/exr_writer.hpp"
 
+#include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -9,6 +10,7 @@
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTiledInputFile.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
 #include <cstddef>
@@ -141,6 +143,15 @@ void ExrWriter::write(const TileImage& tile) {
     }
     file_->tiles->setFrameBuffer(buffer);
     file_->tiles->writeTile(tile.column, tile.row);
+}
+
+void ExrWriter::copy_tiles(const std::filesystem::path& other) {
+    try {
+        Imf::TiledInputFile in(other.c_str(), 0);
+        file_->tiles->copyPixels(in);
+    } catch (const Iex::BaseExc& error) {
+        throw RunError(fmt::format("{}: cannot be copied: {}", other.string(), error.what()));
+    }
 }
 
 void ExrWriter::finish() {

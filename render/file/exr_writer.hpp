@@ -27,6 +27,10 @@ class ExrWriter {
     ~ExrWriter();
 
     void write(const TileImage& tile);
+    /// Instead: all tiles of another file, as they are stored there. It must have been written with
+    /// the same settings and window.
+    /// @throws RunError   it cannot be read
+    void copy_tiles(const std::filesystem::path& other);
     /// After the last tile: the file appears under its name.
     void finish();
 

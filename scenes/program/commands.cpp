@@ -47,6 +47,7 @@ Json to_json(const SimulateReport& r) {
 Json to_json(const FilmReport& r) {
     return {{"frames", r.frames.string()},
             {"rendered", r.rendered},
+            {"copied", r.copied},
             {"kept", r.kept},
             {"view_rays", r.stats.view_rays},
             {"shadow_rays", r.stats.shadow_rays},
@@ -87,8 +88,11 @@ std::string simulated_text(const SimulateReport& r, const fs::path& file) {
 }
 
 std::string filmed_text(const FilmReport& r) {
-    return fmt::format("{} frames rendered, {} kept, {}\nframes:  {}\npreview: {}", r.rendered,
-                       r.kept, duration_text(r.seconds), r.frames.string(), r.preview.string());
+    const std::string copied =
+        r.copied > 0 ? fmt::format("{} copied (the same as before), ", r.copied) : "";
+    return fmt::format("{} frames rendered, {}{} kept, {}\nframes:  {}\npreview: {}", r.rendered,
+                       copied, r.kept, duration_text(r.seconds), r.frames.string(),
+                       r.preview.string());
 }
 
 void simulate_command(const CommandLine& line) {

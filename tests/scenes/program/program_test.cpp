@@ -59,6 +59,43 @@ TEST(Program, SameBytesAtAnyThreadCount) {
     }
 }
 
+TEST(Program, FramesThatLookTheSameAreCopiedWithTheBytesOfRenderingThem) {
+    const Folder folder("copied");
+    // Rest, a turn of the camera in frame 2, rest again.
+    const auto scene = folder.write("rest.toml", small_scene(0.35) + R"(
+[[camera.key]]
+time = 0.06
+fourth = [0, 0, 0, 1]
+[[camera.key]]
+time = 0.14
+fourth = [0.5, 0, 0, 1]
+)");
+    const std::vector<std::string> still = {"--set", "physics.gravity=[0,0,0,0]",
+                                            "--set", "body.ball.velocity=[0,0,0,0]",
+                                            "--set", "body.ball.angular_velocity={xw=0}"};
+    const auto render = [&](const char* out, std::vector<std::string> more) {
+        std::vector<std::string> line = {"render", scene, "-o", folder.file(out), "--json"};
+        line.insert(line.end(), still.begin(), still.end());
+        line.insert(line.end(), more.begin(), more.end());
+        const Outcome run = tesserae(line);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(run.out)["render"];
+    };
+    const auto whole = render("whole", {});
+    EXPECT_EQ(whole["rendered"], 3);
+    EXPECT_EQ(whole["copied"], 4);
+    for (const char* frame : {"1", "4", "6"}) {
+        EXPECT_EQ(render(frame, {"--frames", frame})["rendered"], 1);
+        for (const std::string name : {"frames/rest.000N.exr", "preview/rest.000N.png"}) {
+            std::string file = name;
+            file.replace(file.find('N'), 1, frame);
+            EXPECT_EQ(content(folder / "whole" / file), content(folder / frame / file)) << file;
+        }
+    }
+    EXPECT_NE(content(folder / "whole/preview/rest.0001.png"),
+              content(folder / "whole/preview/rest.0004.png"));
+}
+
 TEST(Program, AnotherSceneInTheSameFolderIsRefused) {
     const Folder folder("mix");
     const auto scene = folder.write("drop.toml", small_scene(0.1));

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "render/frame.hpp"
+
+namespace tesserae::render {
+
+/// Where a frame's files lie.
+struct FrameFiles {
+    std::filesystem::path exr, preview;
+};
+
+/// render_frame() of a picture that is the same as that of another frame: its pixels are copied as
+/// they are stored, the header written anew. The bytes are those of rendering it.
+/// @param from    files of a frame that was rendered from an equal picture
+/// @throws RunError   a file cannot be read or written
+void copy_frame(const FrameFiles& from, const Picture& picture, const FrameInfo& info,
+                const FrameFiles& to);
+
+}  // namespace tesserae::render
