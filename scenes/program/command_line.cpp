@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
+#include "scenes/generate.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
 
@@ -112,6 +113,13 @@ void require_known_command(const CLI::App& app, const std::string& word) {
                                  fmt::join(names, ", "), did_you_mean(word, names)));
 }
 
+void require_known_generator(const std::string& name) {
+    if (std::find(std::begin(kGenerators), std::end(kGenerators), name) != std::end(kGenerators))
+        return;
+    throw InputError(fmt::format("generate {}: expected one of {}{}", toml_text(name),
+                                 fmt::join(kGenerators, ", "), did_you_mean(name, kGenerators)));
+}
+
 }  // namespace
 
 CommandLine parse_command_line(int argc, const char* const* argv) {
@@ -148,8 +156,15 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     add_common(info, line);
     info.add_option("file", line.file, "a .toml, .h5 or .exr file")->required();
 
-    for (const char* later : {"generate", "submit"})
-        app.add_subcommand(later, "not yet built")->allow_extras()->group("");
+    CLI::App& generate =
+        *app.add_subcommand("generate", "a many-body scene, as TOML on standard output");
+    generate.add_option("name", line.generator, fmt::format("{}", fmt::join(kGenerators, ", ")))
+        ->required();
+    generate.add_option("--bodies", line.bodies, "how many, beside floor and walls")
+        ->required()
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+
+    app.add_subcommand("submit", "not yet built")->allow_extras()->group("");
 
     if (argc > 1) require_known_command(app, argv[1]);
     try {
@@ -163,7 +178,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     }
     const CLI::App& chosen = *app.get_subcommands().front();
     line.command = chosen.get_name();
-    if (line.command == "generate" || line.command == "submit")
+    if (line.command == "generate") require_known_generator(line.generator);
+    if (line.command == "submit")
         throw InputError(fmt::format("tesserae {}: not yet built", line.command));
     append_overrides(chosen, typed, line.sets);
     if (line.threads == 0) line.threads = parallel::granted_cores();

@@ -15,6 +15,8 @@ struct CommandLine {
     std::filesystem::path trajectory;
     std::string frames;
     std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
+    std::string generator;
+    std::uint64_t bodies = 0;  ///< to generate
     int threads = 0;
     bool quiet = false, json = false, overwrite = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.

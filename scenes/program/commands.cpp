@@ -9,6 +9,7 @@
 #include "parallel/threads.hpp"
 #include "render/file/file_writer.hpp"
 #include "scenes/film.hpp"
+#include "scenes/generate.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan.hpp"
 #include "scenes/program/info.hpp"
@@ -176,6 +177,7 @@ void execute(const CommandLine& line) {
     if (line.command == "run" || line.command == "render") film_command(line);
     if (line.command == "plan") plan_command(line);
     if (line.command == "info") info_command(line);
+    if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw RunError("standard output: cannot be written");
 }

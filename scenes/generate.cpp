@@ -1,0 +1,229 @@
+#include "scenes/generate.hpp"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/error.hpp"
+#include "scenes/load/effective.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+using Counts = std::array<std::uint64_t, 4>;
+
+/// Bodies on a grid, so many to fill it axis by axis.
+struct Grid {
+    std::array<int, 4> order;  ///< axes, the one that fills first in front
+    Counts size;               ///< by axis; of the last in `order` as many as it takes
+    Vec4 spacing, corner;      ///< [m]
+};
+
+/// A piece of a grid without gaps.
+struct Block {
+    Counts count;
+    Vec4 centre;
+};
+
+/// At most four: what is full, then what is left over in one axis fewer each.
+std::vector<Block> blocks_of(const Grid& grid, std::uint64_t bodies) {
+    std::vector<Block> blocks;
+    Counts first = {0, 0, 0, 0};
+    for (int depth = 3; depth >= 0 && bodies > 0; --depth) {
+        Counts count = {1, 1, 1, 1};
+        std::uint64_t layer = 1;
+        for (int i = 0; i < depth; ++i) {
+            const auto axis = static_cast<std::size_t>(grid.order[static_cast<std::size_t>(i)]);
+            count[axis] = grid.size[axis];
+            layer *= grid.size[axis];
+        }
+        const auto axis = static_cast<std::size_t>(grid.order[static_cast<std::size_t>(depth)]);
+        count[axis] = bodies / layer;
+        if (count[axis] > 0) {
+            Vec4 middle;
+            for (std::size_t i = 0; i < 4; ++i)
+                middle[static_cast<int>(i)] =
+                    static_cast<double>(first[i]) + 0.5 * (static_cast<double>(count[i]) - 1);
+            blocks.push_back({count, grid.corner + middle.cwiseProduct(grid.spacing)});
+        }
+        first[axis] = count[axis];
+        bodies %= layer;
+    }
+    return blocks;
+}
+
+/// The least n with n^3 >= count.
+std::uint64_t cube_side(std::uint64_t count) {
+    auto n = static_cast<std::uint64_t>(std::cbrt(static_cast<double>(count)));
+    while (n * n * n < count) ++n;
+    return std::max<std::uint64_t>(n, 1);
+}
+
+constexpr const char* kSphere = "shape = \"hypersphere\"\nradius = 0.5\n";
+constexpr const char* kPlainBox = "shape = \"hyperbox\"\nsize = [1, 1, 1, 1]\n";
+constexpr const char* kUnevenBox =
+    "shape = \"hyperbox\"\nsize = [0.9, 0.5, 0.7, 0.6]\n"
+    "rotation = { xy = 20, zw = 35 }\n";
+
+std::string lattice(const Block& b, const Vec4& spacing, double jitter, std::string_view body) {
+    return fmt::format(
+        "\n[[lattice]]\n{}count = [{}, {}, {}, {}]\nspacing = {}\nposition = {}\n"
+        "jitter = {}\nmaterial = \"bodies\"\n",
+        body, b.count[0], b.count[1], b.count[2], b.count[3], toml_text(spacing),
+        toml_text(b.centre), jitter);
+}
+
+std::string lattices(const Grid& grid, std::uint64_t bodies, double jitter, std::string_view body) {
+    std::string text;
+    for (const Block& block : blocks_of(grid, bodies))
+        text += lattice(block, grid.spacing, jitter, body);
+    return text;
+}
+
+/// A plane whose free side faces the origin, unseen.
+std::string wall(int axis, double side, double distance, std::string_view surface) {
+    return fmt::format(
+        "\n[[body]]\nname = \"wall-{}{}\"\nshape = \"hyperplane\"\nnormal = {}\n"
+        "offset = {}\nvisible = false\n{}",
+        side > 0 ? "below-" : "above-", "xyzw"[axis],
+        toml_text(Vec4((side * Vec4::Unit(axis)).array() + 0)), toml_text(-distance), surface);
+}
+
+std::string floor_and_walls(double half_width) {
+    std::string text =
+        "\n[[body]]\nname = \"floor\"\nshape = \"hyperplane\"\n"
+        "normal = [0, 1, 0, 0]\noffset = 0\nmaterial = \"floor\"\n";
+    if (half_width > 0)
+        for (const int axis : {0, 2, 3})
+            for (const double side : {1.0, -1.0}) text += wall(axis, side, half_width, "");
+    return text;
+}
+
+/// The tables that all have in common; the camera looks at a block of this height and width, in the
+/// slice at `fourth`.
+std::string stage(std::string_view name, std::string_view physics, double height, double width,
+                  double fourth = 0) {
+    const double far = 1.7 * std::max(width, height) + 4;
+    const Vec4 position(0.35 * far, 0.6 * height + 0.25 * far, -0.9 * far, fourth);
+    return fmt::format(R"([scene]
+name = "{}"
+
+[physics]
+{}
+[camera]
+position = {}
+look_at = {}
+field_of_view = 45
+
+[render]
+samples = 4
+max_distance = {}
+
+[[light]]
+type = "sun"
+direction = [0.5, -1, 0.6, 0.2]
+color = [1, 0.92, 0.8]
+strength = 4.5
+angle = 2
+
+[[light]]
+type = "sky"
+color = [0.6, 0.75, 1]
+strength = 0.4
+
+[[material]]
+name = "floor"
+albedo = [0.5, 0.5, 0.48]
+pattern = "checker"
+pattern_albedo = [0.4, 0.4, 0.4]
+pattern_size = 2
+
+[[material]]
+name = "bodies"
+albedo = [0.85, 0.45, 0.12]
+pattern = "stripes"
+pattern_albedo = [0.93, 0.86, 0.75]
+pattern_size = 0.25
+)",
+                       name, physics, toml_text(position),
+                       toml_text(Vec4(0, 0.4 * height, 0, fourth)), 10 * far);
+}
+
+std::string gas(std::uint64_t bodies) {
+    // Two grids, each in the gaps of the other, that move against each other.
+    constexpr double kSpacing = 2.4;
+    const std::uint64_t half = bodies / 2;
+    std::uint64_t n = 1;
+    while (n * n * n * n < bodies - half) ++n;
+    const double width = kSpacing * static_cast<double>(n), first = 0.5 * (kSpacing - width);
+    Grid grid = {{0, 1, 2, 3},
+                 {n, n, n, n},
+                 Vec4::Constant(kSpacing),
+                 Vec4::Constant(first - 0.25 * kSpacing)};
+    // The slice shows one of the grids first.
+    std::string text =
+        stage("gas", "gravity = [0, 0, 0, 0]\nduration = 2\n", 0, width, 0.25 * kSpacing);
+    constexpr const char* kElastic = "restitution = 1\nfriction = 0\n";
+    for (int axis = 0; axis < 4; ++axis)
+        for (const double side : {1.0, -1.0}) text += wall(axis, side, 0.5 * width + 1, kElastic);
+    const auto body = [&](const char* velocity) {
+        return fmt::format("{}velocity = {}\n{}", kSphere, velocity, kElastic);
+    };
+    text += lattices(grid, bodies - half, 0.05, body("[3, 1, -2, 2]"));
+    grid.corner.array() += 0.5 * kSpacing;
+    return text + lattices(grid, half, 0.05, body("[-3, -1, 2, -2]"));
+}
+
+std::string heap(std::string_view name, std::uint64_t bodies, const char* body) {
+    // Half as high as wide, once it has fallen.
+    constexpr double kSpacing = 1.1;
+    const std::uint64_t n = cube_side(
+        static_cast<std::uint64_t>(std::ceil(std::pow(2.0 * static_cast<double>(bodies), 0.75))));
+    const double width = kSpacing * static_cast<double>(n);
+    const auto layers = static_cast<double>(bodies / (n * n * n) + 1);
+    const double first = 0.5 * (kSpacing - width);
+    const Grid grid = {
+        {0, 2, 3, 1}, {n, 0, n, n}, Vec4::Constant(kSpacing), {first, 0.7, first, first}};
+    return stage(name, "duration = 4\n", kSpacing * layers, width) +
+           floor_and_walls(0.5 * width + 0.1) + lattices(grid, bodies, 0.045, body);
+}
+
+std::string stacks(std::uint64_t bodies) {
+    constexpr double kApart = 2;
+    const std::uint64_t n = cube_side((bodies + 9) / 10);
+    const double width = kApart * static_cast<double>(n), first = 0.5 * (kApart - width);
+    const Grid grid = {
+        {1, 0, 2, 3}, {n, 10, n, n}, {kApart, 1, kApart, kApart}, {first, 0.5, first, first}};
+    return stage("stacks", "duration = 2\n", 10, width) + floor_and_walls(0) +
+           lattices(grid, bodies, 0, kPlainBox);
+}
+
+std::string pyramid(std::uint64_t bodies) {
+    std::uint64_t n = 1;
+    while (n * (n + 1) / 2 < bodies) ++n;
+    const auto height = static_cast<double>(n);
+    std::string text =
+        stage("pyramid", "duration = 2\n", height, 1.1 * height) + floor_and_walls(0);
+    for (std::uint64_t row = 0; bodies > 0; ++row) {
+        const std::uint64_t length = std::min(bodies, n - row);
+        bodies -= length;
+        text += lattice({{length, 1, 1, 1}, {0, 0.5 + static_cast<double>(row), 0, 0}},
+                        {1.1, 1, 1, 1}, 0, kPlainBox);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string generated_scene(std::string_view name, std::uint64_t bodies) {
+    TSR_ASSERT(bodies > 0);
+    const std::string head = fmt::format("# tesserae generate {} --bodies {}\n\n", name, bodies);
+    if (name == "gas") return head + gas(bodies);
+    if (name == "pile") return head + heap(name, bodies, kSphere);
+    if (name == "boxes") return head + heap(name, bodies, kUnevenBox);
+    if (name == "stacks") return head + stacks(bodies);
+    TSR_ASSERT(name == "pyramid");
+    return head + pyramid(bodies);
+}
+
+}  // namespace tesserae::scenes
