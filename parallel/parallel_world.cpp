@@ -10,7 +10,7 @@
 #include "parallel/chunks.hpp"
 #include "parallel/coloured_island.hpp"
 #include "parallel/island_graph.hpp"
-#include "parallel/sort_and_sweep.hpp"
+#include "parallel/kept_pairs.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::size_t kContactGrain = 1024;
 }  // namespace
 
 struct ParallelWorld::Stages {
-    SortAndSweep sort_and_sweep;
+    KeptPairs kept_pairs;
     ChunkedList<Contact> contacts;
     IslandBuilder island_builder;
     IslandGraph island_graph;
@@ -51,6 +51,10 @@ StepReport ParallelWorld::step(double dt) {
     return finish_step();
 }
 
+void ParallelWorld::forget_hints() {
+    if (stages_) stages_->kept_pairs.forget();
+}
+
 void ParallelWorld::advance_first_half() {
     for_each_range(simulation_.bodies.size(), kBodyGrain,
                    [&](Range bodies) { tesserae::advance_first_half(simulation_, step_, bodies); });
@@ -59,10 +63,13 @@ void ParallelWorld::advance_first_half() {
 
 void ParallelWorld::find_pairs() {
     const std::size_t count = simulation_.bodies.size();
-    if (step_.substep > 0 && !outgrows_bounds(simulation_, step_, {0, count})) return;
+    if (step_.substep > 0 && !any_range(count, kBodyGrain, [&](Range bodies) {
+            return outgrows_bounds(simulation_, step_, bodies);
+        }))
+        return;
     for_each_range(count, kBodyGrain,
                    [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
-    stages_->sort_and_sweep.find_pairs(simulation_, step_);
+    stages_->kept_pairs.find_pairs(simulation_, step_);
 }
 
 void ParallelWorld::find_contacts() {
@@ -74,7 +81,7 @@ void ParallelWorld::find_contacts() {
             },
             step_.contacts);
         look = wake_touched(step_);
-        if (look) stages_->sort_and_sweep.find_pairs(simulation_, step_);
+        if (look) stages_->kept_pairs.choose_pairs(simulation_, step_);
     }
     begin_contacts(step_);
     for_each_range(step_.contacts.size(), kContactGrain,

@@ -20,6 +20,9 @@ class ParallelWorld {
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
 
+    /// Drops what is kept to make the next step faster. It changes no result.
+    void forget_hints();
+
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
     StepMemory& memory() { return simulation_.memory; }

@@ -18,10 +18,11 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// The cube about the ball, centred where the body is, that holds all that it can reach in the rest
-/// of the step. Infinite if unbounded.
+/// The ball that holds all that a body can reach in the rest of the step.
 struct Bounds {
-    Vec4 lower, upper;  ///< world [m]
+    Vec4 centre =
+        Vec4::Zero();   ///< where the body is when they are made, world [m]; 0 if unbounded
+    double radius = 0;  ///< [m]; infinite if unbounded
 };
 
 /// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
