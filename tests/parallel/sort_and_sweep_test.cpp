@@ -97,6 +97,23 @@ TEST(SortAndSweep, FindsCoincidentAndTouchingBodies) {
     check(Bodies{}, sort_and_sweep, threads);
 }
 
+/// 0.1 + 0.2 is rounded up to their distance, though they miss each other by 1e-17.
+TEST(SortAndSweep, FindsBallsThatOverlapByRounding) {
+    Bodies bodies;
+    for (int i = 0; i < 2; ++i) add(bodies, sphere_type(0.1));
+    const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
+    SortAndSweep sort_and_sweep;
+    Threads threads(1);
+    for (int axis = 0; axis < 4; ++axis) {
+        const std::vector<Bounds> bounds = {{Vec4::Zero(), 0.1},
+                                            {(0.1 + 0.2) * Vec4::Unit(axis), 0.2}};
+        ASSERT_TRUE(overlap(bounds[0], bounds[1]));
+        std::vector<BodyPair> pairs;
+        threads.run([&] { sort_and_sweep.find_pairs(simulation, bounds, pairs); });
+        EXPECT_EQ(pairs, (std::vector<BodyPair>{{0, 1}})) << axis;
+    }
+}
+
 /// Each body is of another size: sixty powers of two, among which some are rare.
 TEST(SortAndSweep, FindsThePairsOfVeryManySizes) {
     std::mt19937_64 engine(5);
