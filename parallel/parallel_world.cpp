@@ -25,6 +25,7 @@ constexpr std::size_t kContactGrain = 1024;
 struct ParallelWorld::Stages {
     KeptPairs kept_pairs;
     ChunkedList<Contact> contacts;
+    ChunkedList<ContactImpulse> pushing;
     IslandBuilder island_builder;
     IslandGraph island_graph;
 };
@@ -58,7 +59,7 @@ void ParallelWorld::forget_hints() {
 void ParallelWorld::advance_first_half() {
     for_each_range(simulation_.bodies.size(), kBodyGrain,
                    [&](Range bodies) { tesserae::advance_first_half(simulation_, step_, bodies); });
-    require_finite(simulation_, step_);
+    require_finite();
 }
 
 void ParallelWorld::find_pairs() {
@@ -80,7 +81,9 @@ void ParallelWorld::find_contacts() {
                 tesserae::find_contacts(simulation_, step_, pairs, list);
             },
             step_.contacts);
-        look = wake_touched(step_);
+        look = any_range(step_.contacts.size(), kContactGrain,
+                         [&](Range contacts) { return touches_sleeper(step_, contacts); }) &&
+               wake_touched(step_);
         if (look) stages_->kept_pairs.choose_pairs(simulation_, step_);
     }
     begin_contacts(step_);
@@ -108,11 +111,24 @@ void ParallelWorld::advance_second_half() {
 
 void ParallelWorld::relax_islands() {
     stages_->island_graph.run(simulation_, step_, relax_island, relax_coloured_island);
+    stages_->pushing.collect(
+        step_.impulses.size(), kContactGrain,
+        [&](Range contacts, std::vector<ContactImpulse>& list) {
+            list_pushing(step_, contacts, list);
+        },
+        step_.pushing);
     end_substep(simulation_, step_);
 }
 
+/// Pieces find out whether any body is not finite, and only then the lowest is looked for.
+void ParallelWorld::require_finite() const {
+    const std::size_t count = simulation_.bodies.size();
+    if (any_range(count, kBodyGrain, [&](Range bodies) { return !is_finite(step_, bodies); }))
+        tesserae::require_finite(simulation_, step_);
+}
+
 StepReport ParallelWorld::finish_step() {
-    require_finite(simulation_, step_);
+    require_finite();
     return commit_step(simulation_, step_);
 }
 

@@ -39,6 +39,7 @@ class ParallelWorld {
     void advance_second_half();
     void relax_islands();
     StepReport finish_step();
+    void require_finite() const;
 
     Simulation simulation_;
     StepData step_;

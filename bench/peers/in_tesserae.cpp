@@ -135,6 +135,8 @@ class InTesserae : public PeerEngine {
         const double solved = thread_time();
         advance_second_half(simulation, step, all);
         for (std::size_t i = 0; i < step.islands.size(); ++i) relax_island(simulation, step, i);
+        step.pushing.clear();
+        list_pushing(step, {0, step.impulses.size()}, step.pushing);
         end_substep(simulation, step);
         times.others += thread_time() - solved;
         return times;
