@@ -20,6 +20,7 @@
 #include "core/dynamics/pairs.hpp"
 #include "core/dynamics/solver.hpp"
 #include "core/dynamics/step.hpp"
+#include "parallel/kept_pairs.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/sort_and_sweep.hpp"
 #include "parallel/threads.hpp"
@@ -188,7 +189,7 @@ struct StepBeforeSolver {
         const Range all{0, heap.bodies.size()};
         advance_first_half(simulation, step, all);
         update_bounds(simulation, step, all);
-        parallel::SortAndSweep().find_pairs(simulation, step);
+        parallel::KeptPairs().find_pairs(simulation, step);
         find_contacts(simulation, step, {0, step.pairs.size()}, step.contacts);
         begin_contacts(step);
         recall_impulses(simulation, step, {0, step.contacts.size()});
@@ -243,7 +244,7 @@ BENCHMARK(step_of_heap)
     ->Unit(benchmark::kMillisecond);
 
 // ---- broad phase -----------------------------------------------------------------------------
-/// Spheres of one size all over a 4D cube, one thread.
+/// A search among spheres of one size all over a 4D cube, one thread.
 void broad_phase(State& state) {
     const auto count = static_cast<int>(state.range(0));
     Simulation simulation =
@@ -256,7 +257,7 @@ void broad_phase(State& state) {
     parallel::SortAndSweep sort_and_sweep;
     parallel::Threads threads(1);
     threads.run([&] {
-        for (auto _ : state) sort_and_sweep.find_pairs(simulation, step);
+        for (auto _ : state) sort_and_sweep.find_pairs(simulation, step.bounds, step.pairs);
     });
     report_ns_per(state, "body", count);
     state.counters["pairs_per_body"] = static_cast<double>(step.pairs.size()) / count;

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 #include "core/dynamics/step_data.hpp"
@@ -16,6 +17,17 @@ void for_each_range(std::size_t count, std::size_t grain, const Work& work) {
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
         work(Range{chunk * grain, std::min(count, (chunk + 1) * grain)});
     });
+}
+
+/// Whether test(Range) is true of any such piece; those that come late are not asked once one is.
+template <class Test>
+bool any_range(std::size_t count, std::size_t grain, const Test& test) {
+    std::atomic<bool> any = false;
+    for_each_range(count, grain, [&](Range range) {
+        if (!any.load(std::memory_order_relaxed) && test(range))
+            any.store(true, std::memory_order_relaxed);
+    });
+    return any;
 }
 
 /// A list that is filled in parallel: each piece of the input writes a list of its own, and these
@@ -33,13 +45,21 @@ class ChunkedList {
             list.clear();
             fill(range, list);
         });
-        all.clear();
+        begin_.assign(1, 0);
         for (std::size_t chunk = 0; chunk < chunks; ++chunk)
-            all.insert(all.end(), lists_[chunk].begin(), lists_[chunk].end());
+            begin_.push_back(begin_.back() + lists_[chunk].size());
+        // Not cleared first: what is there need not be made before it is written over.
+        all.resize(begin_.back());
+        for_each_range(chunks, 1, [&](Range range) {
+            const std::size_t chunk = range.begin;
+            std::copy(lists_[chunk].begin(), lists_[chunk].end(),
+                      all.begin() + static_cast<std::ptrdiff_t>(begin_[chunk]));
+        });
     }
 
   private:
     std::vector<std::vector<Item>> lists_;
+    std::vector<std::size_t> begin_;  ///< of each list in `all`, and the end
 };
 
 }  // namespace tesserae::parallel

@@ -10,7 +10,7 @@
 #include "parallel/chunks.hpp"
 #include "parallel/coloured_island.hpp"
 #include "parallel/island_graph.hpp"
-#include "parallel/sort_and_sweep.hpp"
+#include "parallel/kept_pairs.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -23,8 +23,9 @@ constexpr std::size_t kContactGrain = 1024;
 }  // namespace
 
 struct ParallelWorld::Stages {
-    SortAndSweep sort_and_sweep;
+    KeptPairs kept_pairs;
     ChunkedList<Contact> contacts;
+    ChunkedList<ContactImpulse> pushing;
     IslandBuilder island_builder;
     IslandGraph island_graph;
 };
@@ -51,18 +52,25 @@ StepReport ParallelWorld::step(double dt) {
     return finish_step();
 }
 
+void ParallelWorld::forget_hints() {
+    if (stages_) stages_->kept_pairs.forget();
+}
+
 void ParallelWorld::advance_first_half() {
     for_each_range(simulation_.bodies.size(), kBodyGrain,
                    [&](Range bodies) { tesserae::advance_first_half(simulation_, step_, bodies); });
-    require_finite(simulation_, step_);
+    require_finite();
 }
 
 void ParallelWorld::find_pairs() {
     const std::size_t count = simulation_.bodies.size();
-    if (step_.substep > 0 && !outgrows_bounds(simulation_, step_, {0, count})) return;
+    if (step_.substep > 0 && !any_range(count, kBodyGrain, [&](Range bodies) {
+            return outgrows_bounds(simulation_, step_, bodies);
+        }))
+        return;
     for_each_range(count, kBodyGrain,
                    [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
-    stages_->sort_and_sweep.find_pairs(simulation_, step_);
+    stages_->kept_pairs.find_pairs(simulation_, step_);
 }
 
 void ParallelWorld::find_contacts() {
@@ -73,8 +81,10 @@ void ParallelWorld::find_contacts() {
                 tesserae::find_contacts(simulation_, step_, pairs, list);
             },
             step_.contacts);
-        look = wake_touched(step_);
-        if (look) stages_->sort_and_sweep.find_pairs(simulation_, step_);
+        look = any_range(step_.contacts.size(), kContactGrain,
+                         [&](Range contacts) { return touches_sleeper(step_, contacts); }) &&
+               wake_touched(step_);
+        if (look) stages_->kept_pairs.choose_pairs(simulation_, step_);
     }
     begin_contacts(step_);
     for_each_range(step_.contacts.size(), kContactGrain,
@@ -101,11 +111,24 @@ void ParallelWorld::advance_second_half() {
 
 void ParallelWorld::relax_islands() {
     stages_->island_graph.run(simulation_, step_, relax_island, relax_coloured_island);
+    stages_->pushing.collect(
+        step_.impulses.size(), kContactGrain,
+        [&](Range contacts, std::vector<ContactImpulse>& list) {
+            list_pushing(step_, contacts, list);
+        },
+        step_.pushing);
     end_substep(simulation_, step_);
 }
 
+/// Pieces find out whether any body is not finite, and only then the lowest is looked for.
+void ParallelWorld::require_finite() const {
+    const std::size_t count = simulation_.bodies.size();
+    if (any_range(count, kBodyGrain, [&](Range bodies) { return !is_finite(step_, bodies); }))
+        tesserae::require_finite(simulation_, step_);
+}
+
 StepReport ParallelWorld::finish_step() {
-    require_finite(simulation_, step_);
+    require_finite();
     return commit_step(simulation_, step_);
 }
 

@@ -20,6 +20,9 @@ class ParallelWorld {
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
 
+    /// Drops what is kept to make the next step faster. It changes no result.
+    void forget_hints();
+
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
     StepMemory& memory() { return simulation_.memory; }
@@ -36,6 +39,7 @@ class ParallelWorld {
     void advance_second_half();
     void relax_islands();
     StepReport finish_step();
+    void require_finite() const;
 
     Simulation simulation_;
     StepData step_;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -14,53 +13,290 @@
 namespace tesserae::parallel {
 namespace {
 
-/// Bodies or entries of one task: some 10 us of work.
+/// Bodies of one task: some 10 to 50 us of work.
 constexpr std::size_t kGrain = 256;
 
-/// Width of a cell in extents of the level's largest body. A wider cell holds more bodies that do
-/// not meet, a narrower one puts each body into more cells: 1.5 to 3 cost the same within a tenth.
-constexpr double kCellWidth = 2;
+/// Radii grow by these parts of themselves and of the centre's largest coordinate, which is more
+/// than the rounding of bounds, of distances and of a ball that moves within another can add up to.
+constexpr double kPadOfRadius = 1e-12, kPadOfPlace = 1e-13;
 
-constexpr int kBits = 21;
-constexpr double kLastCoordinate = (1 << kBits) - 1;
+/// Width of a cell in extents of the level's largest body, which at 1 would still fit but for
+/// rounding. Wider cells hold more bodies that do not meet.
+constexpr double kCellWidth = 1.01;
 
-BodyPair ordered(BodyId i, BodyId j) { return {std::min(i, j), std::max(i, j)}; }
+constexpr int kBits = 20;
+constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
+/// Coordinates of bodies, so that those beside them fit in too.
+constexpr std::uint64_t kFirst = 1, kLast = kMask - 1;
 
-double extent_of(const Bounds& bounds) { return (bounds.upper - bounds.lower).maxCoeff(); }
+std::uint64_t cell_of(std::uint64_t level, const std::uint64_t (&at)[3]) {
+    return ((level << kBits | at[0]) << kBits | at[1]) << kBits | at[2];
+}
+
+double padded(const Bounds& bounds) {
+    return bounds.radius * (1 + kPadOfRadius) + kPadOfPlace * bounds.centre.cwiseAbs().maxCoeff();
+}
 
 }  // namespace
 
-void SortAndSweep::find_pairs(const Simulation& simulation, StepData& step) {
+void SortAndSweep::find_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
+                              std::vector<BodyPair>& pairs) {
     bounded_.clear();
     unbounded_.clear();
     for (BodyId id = 0; id < simulation.bodies.size(); ++id)
         (simulation.type_of(id).bounded ? bounded_ : unbounded_).push_back(id);
 
-    choose_axes(step);
-    choose_levels(step);
-    entry_lists_.collect(
-        bounded_.size(), kGrain,
-        [&](Range range, std::vector<Entry>& list) {
-            for (std::size_t i = range.begin; i < range.end; ++i)
-                add_entries(step, bounded_[i], list);
-        },
-        entries_);
-    tbb::parallel_sort(entries_, [](const Entry& i, const Entry& j) {
-        return std::tie(i.level, i.cell, i.is_finer, i.lower, i.id) <
-               std::tie(j.level, j.cell, j.is_finer, j.lower, j.id);
-    });
+    choose_axes(bounds);
+    choose_levels(bounds);
+    sort_items(simulation, bounds);
+    list_cells();
     pair_lists_.collect(
-        entries_.size(), kGrain,
-        [&](Range range, std::vector<BodyPair>& pairs) { sweep(simulation, step, range, pairs); },
-        found_);
-    unbounded_lists_.collect(
-        bounded_.size(), kGrain,
-        [&](Range range, std::vector<BodyPair>& pairs) {
-            add_unbounded(simulation, step, range, pairs);
+        items_.size(), kGrain,
+        [&](Range items, std::vector<BodyPair>& list) {
+            sweep(items, list);
+            add_unbounded(simulation, items, list);
         },
-        with_unbounded_);
-    found_.insert(found_.end(), with_unbounded_.begin(), with_unbounded_.end());
-    sort_pairs(simulation.bodies.size(), step.pairs);
+        found_);
+    sort_pairs(simulation.bodies.size(), pairs);
+}
+
+/// Sorted is the axis along which centres spread most. It changes the time, not the pairs.
+void SortAndSweep::choose_axes(const std::vector<Bounds>& bounds) {
+    // In the bodies' order, so that rounding does not depend on threads.
+    Vec4 sum = Vec4::Zero(), squares = Vec4::Zero();
+    origin_.setConstant(std::numeric_limits<double>::infinity());
+    for (BodyId id : bounded_) {
+        const Vec4& centre = bounds[id].centre;
+        sum += centre;
+        squares += centre.cwiseAbs2();
+        origin_ = origin_.cwiseMin(centre);
+    }
+    const Vec4 spread =
+        squares - sum.cwiseAbs2() / std::max(1.0, static_cast<double>(bounded_.size()));
+    sorted_axis_ = 0;
+    for (int i = 1; i < 4; ++i)
+        if (spread[i] > spread[sorted_axis_]) sorted_axis_ = i;
+    for (int i = 0, cut = 0; i < 4; ++i)
+        if (i != sorted_axis_) cut_axis_[cut++] = i;
+}
+
+void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
+    levels_.clear();
+    largest_ = 0;
+    for (BodyId id : bounded_) largest_ = std::max(largest_, 2 * padded(bounds[id]));
+    for (BodyId id : bounded_) {
+        const double extent = 2 * padded(bounds[id]);
+        const int exponent = exponent_of(extent);
+        auto level = levels_.begin() + static_cast<std::ptrdiff_t>(level_of(extent));
+        if (level == levels_.end() || level->exponent != exponent)
+            level = levels_.insert(level, {exponent});
+        level->cell = std::max(level->cell, kCellWidth * extent);
+        ++level->bodies;
+    }
+    while (levels_.size() > kMostLevels) {
+        const auto fewest =
+            std::min_element(levels_.begin(), levels_.end() - 1,
+                             [](const Level& k, const Level& l) { return k.bodies < l.bodies; });
+        (fewest + 1)->bodies += fewest->bodies;
+        levels_.erase(fewest);
+    }
+}
+
+/// Counted from the largest, so that sizes that differ by less than a factor of two share a level.
+int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(largest_ / extent); }
+
+/// The first level for bodies of this extent or larger ones.
+std::size_t SortAndSweep::level_of(double extent) const {
+    const int exponent = exponent_of(extent);
+    std::size_t level = 0;
+    while (level < levels_.size() && levels_[level].exponent < exponent) ++level;
+    return level;
+}
+
+/// Monotone in x; what lies farther than the last cell is in the last.
+std::uint64_t SortAndSweep::coordinate(const Level& level, int cut, double x) const {
+    const double cells = (x - origin_[cut_axis_[cut]]) / level.cell;
+    return kFirst +
+           static_cast<std::uint64_t>(std::clamp(cells, 0.0, static_cast<double>(kLast - kFirst)));
+}
+
+void SortAndSweep::sort_items(const Simulation& simulation, const std::vector<Bounds>& bounds) {
+    entries_.resize(bounded_.size());
+    for_each_range(bounded_.size(), kGrain, [&](Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const Bounds& ball = bounds[bounded_[i]];
+            const double radius = padded(ball);
+            const std::size_t level = level_of(2 * radius);
+            std::uint64_t at[3];
+            for (int cut = 0; cut < 3; ++cut)
+                at[cut] = coordinate(levels_[level], cut, ball.centre[cut_axis_[cut]]);
+            entries_[i] = {cell_of(level, at), ball.centre[sorted_axis_] - radius, bounded_[i]};
+        }
+    });
+    tbb::parallel_sort(entries_, [](const Entry& i, const Entry& j) {
+        return std::tie(i.cell, i.lower, i.id) < std::tie(j.cell, j.lower, j.id);
+    });
+    items_.resize(entries_.size());
+    for_each_range(entries_.size(), kGrain, [&](Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const BodyId id = entries_[i].id;
+            const Vec4& centre = bounds[id].centre;
+            const double radius = padded(bounds[id]);
+            items_[i] = {centre,
+                         radius,
+                         entries_[i].lower,
+                         centre[sorted_axis_] + radius,
+                         id,
+                         simulation.type_of(id).movable};
+        }
+    });
+}
+
+void SortAndSweep::list_cells() {
+    cells_.clear();
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+        if (i == 0 || entries_[i].cell != entries_[i - 1].cell)
+            cells_.push_back({entries_[i].cell, i});
+    const std::size_t count = cells_.size();
+    for (std::size_t k = 0; k < levels_.size(); ++k)
+        levels_[k].first = static_cast<std::size_t>(
+            std::lower_bound(cells_.begin(), cells_.end(), std::uint64_t{k} << (3 * kBits),
+                             [](const Cell& c, std::uint64_t cell) { return c.cell < cell; }) -
+            cells_.begin());
+    cells_.push_back({std::numeric_limits<std::uint64_t>::max(), entries_.size()});
+    levels_.push_back({std::numeric_limits<int>::max(), 0, 0, count});
+}
+
+/// The pairs of which the first, by cell and then by lower end, is in the range.
+void SortAndSweep::sweep(Range items, std::vector<BodyPair>& pairs) const {
+    std::size_t c = static_cast<std::size_t>(
+        std::upper_bound(cells_.begin(), cells_.end(), items.begin,
+                         [](std::size_t i, const Cell& cell) { return i < cell.first; }) -
+        cells_.begin() - 1);
+    for (std::size_t begin = items.begin; begin < items.end; ++c) {
+        const std::size_t end = cells_[c + 1].first;
+        const Range part{begin, std::min(items.end, end)};
+        for (std::size_t i = part.begin; i < part.end; ++i)
+            for (std::size_t j = i + 1; j < end && items_[j].lower <= items_[i].upper; ++j)
+                add_if_overlapping(items_[i], items_[j], pairs);
+
+        const std::size_t own = cells_[c].cell >> (3 * kBits);
+        const auto meet_all = [&](const Box& box, std::size_t first, std::size_t level) {
+            for_each_cell(box, first, levels_[level + 1].first,
+                          [&](Range others) { meet(part, others, levels_[level].cell, pairs); });
+        };
+        meet_all(beside(cells_[c].cell), c + 1, own);
+        for (std::size_t level = own + 1; level + 1 < levels_.size(); ++level)
+            meet_all(reached(part, levels_[level]), levels_[level].first, level);
+        begin = part.end;
+    }
+}
+
+SortAndSweep::Box SortAndSweep::beside(std::uint64_t cell) const {
+    Box box;
+    for (int cut = 0; cut < 3; ++cut) {
+        const std::uint64_t at = cell >> ((2 - cut) * kBits) & kMask;
+        box.low[cut] = at - 1;
+        box.high[cut] = at + 1;
+    }
+    return box;
+}
+
+/// The cells of the bodies of a level that these may overlap.
+SortAndSweep::Box SortAndSweep::reached(Range items, const Level& level) const {
+    Box box;
+    for (int cut = 0; cut < 3; ++cut) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t i = items.begin; i < items.end; ++i) {
+            low = std::min(low, items_[i].centre[cut_axis_[cut]] - items_[i].radius);
+            high = std::max(high, items_[i].centre[cut_axis_[cut]] + items_[i].radius);
+        }
+        box.low[cut] = coordinate(level, cut, low - 0.5 * level.cell);
+        box.high[cut] = coordinate(level, cut, high + 0.5 * level.cell);
+    }
+    return box;
+}
+
+/// Visits the bodies of each cell of the box from the first place in cells_ and before the last.
+/// Jumps from one that is not in the box to the next that may be, so that a box may be of any size.
+template <class Visit>
+void SortAndSweep::for_each_cell(const Box& box, std::size_t first, std::size_t last,
+                                 const Visit& visit) const {
+    const auto from = [&](std::size_t c, std::uint64_t cell) {
+        // Most are near: search ever farther before searching between.
+        std::size_t step = 1;
+        while (c + step < last && cells_[c + step].cell < cell) {
+            c += step;
+            step *= 2;
+        }
+        return static_cast<std::size_t>(
+            std::lower_bound(cells_.begin() + static_cast<std::ptrdiff_t>(c),
+                             cells_.begin() + static_cast<std::ptrdiff_t>(std::min(last, c + step)),
+                             cell, [](const Cell& a, std::uint64_t b) { return a.cell < b; }) -
+            cells_.begin());
+    };
+    for (std::size_t c = first; c < last;) {
+        const std::uint64_t cell = cells_[c].cell, level = cell >> (3 * kBits);
+        const std::uint64_t x = cell >> (2 * kBits) & kMask, y = cell >> kBits & kMask,
+                            z = cell & kMask;
+        if (x > box.high[0]) return;
+        if (x < box.low[0])
+            c = from(c, cell_of(level, box.low));
+        else if (y < box.low[1])
+            c = from(c, cell_of(level, {x, box.low[1], box.low[2]}));
+        else if (y > box.high[1])
+            c = from(c, cell_of(level, {x + 1, box.low[1], box.low[2]}));
+        else if (z < box.low[2])
+            c = from(c, cell_of(level, {x, y, box.low[2]}));
+        else if (z > box.high[2])
+            c = from(c, cell_of(level, {x, y + 1, box.low[2]}));
+        else {
+            visit(Range{cells_[c].first, cells_[c + 1].first});
+            ++c;
+        }
+    }
+}
+
+/// The pairs of one of the items and one of the others, which are part of a cell of another column
+/// and at most so wide. Of two that overlap along the sorted axis, that which begins first finds
+/// the other.
+void SortAndSweep::meet(Range items, Range others, double widest,
+                        std::vector<BodyPair>& pairs) const {
+    std::size_t i = items.begin;
+    auto j = static_cast<std::size_t>(
+        std::lower_bound(items_.begin() + static_cast<std::ptrdiff_t>(others.begin),
+                         items_.begin() + static_cast<std::ptrdiff_t>(others.end),
+                         items_[i].lower - widest,
+                         [](const Item& item, double lower) { return item.lower < lower; }) -
+        items_.begin());
+    while (i < items.end && j < others.end) {
+        if (items_[i].lower <= items_[j].lower) {
+            for (std::size_t k = j; k < others.end && items_[k].lower <= items_[i].upper; ++k)
+                add_if_overlapping(items_[i], items_[k], pairs);
+            ++i;
+        } else {
+            for (std::size_t k = i; k < items.end && items_[k].lower <= items_[j].upper; ++k)
+                add_if_overlapping(items_[j], items_[k], pairs);
+            ++j;
+        }
+    }
+}
+
+void SortAndSweep::add_if_overlapping(const Item& a, const Item& b,
+                                      std::vector<BodyPair>& pairs) const {
+    if (!overlap({a.centre, a.radius}, {b.centre, b.radius}) || !(a.movable || b.movable)) return;
+    pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
+}
+
+void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
+                                 std::vector<BodyPair>& pairs) const {
+    for (std::size_t i = items.begin; i < items.end; ++i)
+        for (const BodyId other : unbounded_) {
+            const Item& item = items_[i];
+            if (item.movable &&
+                reaches({item.centre, item.radius}, simulation.bodies.type_of(other).shape))
+                pairs.push_back({std::min(item.id, other), std::max(item.id, other)});
+        }
 }
 
 /// By counting each body's pairs, and then each body's by their second.
@@ -77,117 +313,6 @@ void SortAndSweep::sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted)
                       sorted.begin() + static_cast<std::ptrdiff_t>(end_[a]));
         }
     });
-}
-
-/// Sorted is the axis along which centres spread most. It changes the time, not the pairs.
-void SortAndSweep::choose_axes(const StepData& step) {
-    // In the bodies' order, so that rounding does not depend on threads.
-    Vec4 sum = Vec4::Zero(), squares = Vec4::Zero();
-    origin_.setConstant(std::numeric_limits<double>::infinity());
-    for (BodyId id : bounded_) {
-        sum += step.position[id];
-        squares += step.position[id].cwiseAbs2();
-        origin_ = origin_.cwiseMin(step.bounds[id].lower);
-    }
-    const Vec4 spread =
-        squares - sum.cwiseAbs2() / std::max(1.0, static_cast<double>(bounded_.size()));
-    sorted_axis_ = 0;
-    for (int i = 1; i < 4; ++i)
-        if (spread[i] > spread[sorted_axis_]) sorted_axis_ = i;
-    for (int i = 0, cut = 0; i < 4; ++i)
-        if (i != sorted_axis_) cut_axis_[cut++] = i;
-}
-
-void SortAndSweep::choose_levels(const StepData& step) {
-    std::map<int, double> largest;
-    for (BodyId id : bounded_) {
-        const double extent = extent_of(step.bounds[id]);
-        double& known = largest[std::ilogb(extent)];
-        known = std::max(known, extent);
-    }
-    levels_.clear();
-    double finer = 0;
-    for (const auto& [exponent, extent] : largest) {
-        levels_.push_back({exponent, kCellWidth * extent, finer});
-        finer = extent;
-    }
-}
-
-/// Monotone in x, so that a body's cells are all between those of its lower and its upper bound;
-/// what lies farther than the last cell is in the last.
-std::uint64_t SortAndSweep::coordinate(const Level& level, int cut, double x) const {
-    const double cells = (x - origin_[cut_axis_[cut]]) / level.cell;
-    return static_cast<std::uint64_t>(std::clamp(cells, 0.0, kLastCoordinate));
-}
-
-std::uint64_t SortAndSweep::home_cell(const Level& level, const Bounds& a, const Bounds& b) const {
-    std::uint64_t cell = 0;
-    for (int cut = 0; cut < 3; ++cut) {
-        const int axis = cut_axis_[cut];
-        cell = cell << kBits | coordinate(level, cut, std::max(a.lower[axis], b.lower[axis]));
-    }
-    return cell;
-}
-
-void SortAndSweep::add_entries(const StepData& step, BodyId id, std::vector<Entry>& list) const {
-    const Bounds& bounds = step.bounds[id];
-    const int exponent = std::ilogb(extent_of(bounds));
-    for (std::uint32_t k = 0; k < levels_.size(); ++k) {
-        const Level& level = levels_[k];
-        if (level.exponent < exponent) continue;
-        std::uint64_t low[3], high[3];
-        for (int cut = 0; cut < 3; ++cut) {
-            low[cut] = coordinate(level, cut, bounds.lower[cut_axis_[cut]]);
-            high[cut] = coordinate(level, cut, bounds.upper[cut_axis_[cut]]);
-        }
-        for (std::uint64_t x = low[0]; x <= high[0]; ++x)
-            for (std::uint64_t y = low[1]; y <= high[1]; ++y)
-                for (std::uint64_t z = low[2]; z <= high[2]; ++z)
-                    list.push_back({(x << kBits | y) << kBits | z, k, level.exponent > exponent,
-                                    bounds.lower[sorted_axis_], bounds.upper[sorted_axis_], id});
-    }
-}
-
-void SortAndSweep::sweep(const Simulation& simulation, const StepData& step, Range entries,
-                         std::vector<BodyPair>& pairs) const {
-    for (std::size_t i = entries.begin; i < entries.end; ++i) {
-        const Entry& first = entries_[i];
-        if (first.is_finer) continue;
-        const Level& level = levels_[first.level];
-        const auto is_near = [&](std::size_t j, bool finer) {
-            const Entry& e = entries_[j];
-            return e.cell == first.cell && e.level == first.level && e.is_finer == finer &&
-                   e.lower <= first.upper;
-        };
-        const auto add = [&](BodyId other) {
-            const BodyPair pair = ordered(first.id, other);
-            if (is_pair(simulation, step, pair.a, pair.b) &&
-                home_cell(level, step.bounds[first.id], step.bounds[other]) == first.cell)
-                pairs.push_back(pair);
-        };
-        for (std::size_t j = i + 1; j < entries_.size() && is_near(j, false); ++j)
-            add(entries_[j].id);
-        if (level.finer == 0) continue;
-        // Finer ones from where none reaches this one (twice as far: nothing is lost by rounding).
-        const Entry start{first.cell, first.level, true, first.lower - 2 * level.finer, 0, 0};
-        auto j = static_cast<std::size_t>(
-            std::lower_bound(entries_.begin(), entries_.end(), start,
-                             [](const Entry& e, const Entry& f) {
-                                 return std::tie(e.level, e.cell, e.is_finer, e.lower) <
-                                        std::tie(f.level, f.cell, f.is_finer, f.lower);
-                             }) -
-            entries_.begin());
-        for (; j < entries_.size() && is_near(j, true); ++j) add(entries_[j].id);
-    }
-}
-
-void SortAndSweep::add_unbounded(const Simulation& simulation, const StepData& step, Range bounded,
-                                 std::vector<BodyPair>& pairs) const {
-    for (std::size_t i = bounded.begin; i < bounded.end; ++i)
-        for (const BodyId other : unbounded_) {
-            const BodyPair pair = ordered(bounded_[i], other);
-            if (is_pair(simulation, step, pair.a, pair.b)) pairs.push_back(pair);
-        }
 }
 
 }  // namespace tesserae::parallel

@@ -7,56 +7,88 @@
 
 namespace tesserae::parallel {
 
-/// The same pairs as core's find_pairs(), in time that grows little faster than the bodies' number.
+/// Finds overlapping balls in time that grows little faster than their number.
 ///
 /// In four dimensions one sorted axis is not enough: of N bodies in a pile each overlaps N^(3/4)
-/// others along it. So space is cut into cells along the three other axes, the bounds in each cell
-/// are sorted along the fourth, and from each the others are looked at only as far as it reaches. A
-/// pair is reported in one cell, that of the lower corner of what the two have in common.
+/// others along it. So space is cut into cells along the three other axes, each body is put into
+/// the cell of its centre, and each cell's bodies are sorted along the fourth. What a body overlaps
+/// is then in its own cell or in one beside it, and is looked for only as far as it reaches.
 ///
 /// Sizes differ: bodies are divided into levels by powers of two of their extent, and each level
-/// has a grid of its own, with cells twice as wide as its largest body. A level's grid also holds
-/// the bodies of all finer levels, to meet its own. Unbounded bodies meet all others.
+/// has a grid of its own, with cells as wide as its largest body. A cell's bodies meet those of the
+/// cells beside it and of the coarser grids' cells that they reach. Unbounded bodies meet all
+/// others.
 class SortAndSweep {
   public:
-    void find_pairs(const Simulation& simulation, StepData& step);
+    /// Levels are at most so many: when sizes differ more, the level with the fewest bodies joins
+    /// the next coarser one. Each costs a body a search in its grid; too few, and small bodies are
+    /// compared with all in a cell that is far larger than they are.
+    static constexpr std::size_t kMostLevels = 8;
+
+    /// @param bounds   of every body
+    /// @param pairs    becomes, ascending, all pairs that overlap and one of which contacts can
+    ///                 move, and a few that miss each other by less than rounding
+    void find_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
+                    std::vector<BodyPair>& pairs);
 
   private:
-    /// Bodies whose extent has the same binary exponent.
     struct Level {
-        int exponent;
-        double cell = 0;   ///< width of the grid's cells [m]
-        double finer = 0;  ///< largest extent of all finer levels [m]
+        int exponent;     ///< largest binary exponent of its bodies' extents
+        double cell = 0;  ///< width of the grid's cells [m]
+        std::size_t bodies = 0;
+        std::size_t first = 0;  ///< place of its first cell in cells_
     };
-    /// A body's bounds along the sorted axis, in one of the cells that it touches.
+    /// What bodies are sorted by.
     struct Entry {
-        std::uint64_t cell;   ///< of its level: three coordinates of 21 bits
-        std::uint32_t level;  ///< place in levels_
-        bool is_finer;        ///< than the level: met by the level's own bodies only
-        double lower, upper;  ///< [m]
+        std::uint64_t cell;  ///< level, then three coordinates of 20 bits
+        double lower;        ///< along the sorted axis [m]
         BodyId id;
     };
+    /// A bounded body, with its ball enlarged by more than rounding can take from it.
+    struct Item {
+        Vec4 centre;                  ///< world [m]
+        double radius, lower, upper;  ///< [m], the latter along the sorted axis
+        BodyId id;
+        bool movable;
+    };
+    struct Cell {
+        std::uint64_t cell;
+        std::size_t first;  ///< place in items_
+    };
+    /// From the first to the last coordinate, both included, on the three cut axes.
+    struct Box {
+        std::uint64_t low[3], high[3];
+    };
 
-    void choose_axes(const StepData& step);
-    void choose_levels(const StepData& step);
-    void add_entries(const StepData& step, BodyId id, std::vector<Entry>& list) const;
+    void choose_axes(const std::vector<Bounds>& bounds);
+    void choose_levels(const std::vector<Bounds>& bounds);
+    int exponent_of(double extent) const;
+    std::size_t level_of(double extent) const;
     std::uint64_t coordinate(const Level& level, int cut, double x) const;
-    std::uint64_t home_cell(const Level& level, const Bounds& a, const Bounds& b) const;
-    void sweep(const Simulation& simulation, const StepData& step, Range entries,
-               std::vector<BodyPair>& pairs) const;
-    void add_unbounded(const Simulation& simulation, const StepData& step, Range bounded,
+    void sort_items(const Simulation& simulation, const std::vector<Bounds>& bounds);
+    void list_cells();
+    void sweep(Range items, std::vector<BodyPair>& pairs) const;
+    Box beside(std::uint64_t cell) const;
+    Box reached(Range items, const Level& level) const;
+    template <class Visit>
+    void for_each_cell(const Box& box, std::size_t first, std::size_t last,
+                       const Visit& visit) const;
+    void meet(Range items, Range others, double widest, std::vector<BodyPair>& pairs) const;
+    void add_if_overlapping(const Item& a, const Item& b, std::vector<BodyPair>& pairs) const;
+    void add_unbounded(const Simulation& simulation, Range items,
                        std::vector<BodyPair>& pairs) const;
     void sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted);
 
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
-    Vec4 origin_;                ///< lower corner of all bounds [m]
-    std::vector<Level> levels_;  ///< ascending
-    /// Of the bounded ones, ascending by (level, cell, is_finer, lower, id).
-    std::vector<Entry> entries_;
-    ChunkedList<Entry> entry_lists_;
-    ChunkedList<BodyPair> pair_lists_, unbounded_lists_;
-    std::vector<BodyPair> found_, with_unbounded_;
+    Vec4 origin_;                 ///< least coordinates of all centres [m]
+    double largest_ = 0;          ///< extent of all bodies [m]
+    std::vector<Level> levels_;   ///< ascending, and an end
+    std::vector<Entry> entries_;  ///< ascending by (cell, lower, id)
+    std::vector<Item> items_;     ///< in the order of entries_
+    std::vector<Cell> cells_;     ///< those that hold bodies, ascending, and the end of items_
+    ChunkedList<BodyPair> pair_lists_;
+    std::vector<BodyPair> found_;
     std::vector<std::size_t> end_;  ///< of each body's pairs, as their first
 };
 

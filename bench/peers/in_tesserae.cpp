@@ -8,8 +8,8 @@
 #include "core/dynamics/pairs.hpp"
 #include "core/dynamics/solver.hpp"
 #include "core/dynamics/step.hpp"
+#include "parallel/kept_pairs.hpp"
 #include "parallel/parallel_world.hpp"
-#include "parallel/sort_and_sweep.hpp"
 #include "parallel/threads.hpp"
 
 namespace tesserae::bench {
@@ -51,8 +51,8 @@ class InTesserae : public PeerEngine {
     PeerContacts contacts() override {
         Simulation simulation = present();
         StepData step;
-        parallel::SortAndSweep sort_and_sweep;
-        threads_.run([&] { begin(simulation, step, sort_and_sweep); });
+        parallel::KeptPairs kept_pairs;
+        threads_.run([&] { begin(simulation, step, kept_pairs); });
         return {static_cast<double>(step.contacts.size()), static_cast<double>(report_.contacts)};
     }
     double penetration() const override { return report_.penetration; }
@@ -67,11 +67,10 @@ class InTesserae : public PeerEngine {
         threads_.run([&] {
             Simulation simulation = present();
             StepData step;
-            parallel::SortAndSweep sort_and_sweep;
+            parallel::KeptPairs kept_pairs;
             IslandBuilder builder;
             // The first time grows the arrays.
-            for (int i = 0; i < 2; ++i)
-                times = time_step(simulation, step, sort_and_sweep, builder);
+            for (int i = 0; i < 2; ++i) times = time_step(simulation, step, kept_pairs, builder);
         });
         return times;
     }
@@ -84,7 +83,7 @@ class InTesserae : public PeerEngine {
     }
 
     static StageTimes begin(Simulation& simulation, StepData& step,
-                            parallel::SortAndSweep& sort_and_sweep) {
+                            parallel::KeptPairs& kept_pairs) {
         StageTimes times;
         const Range all{0, simulation.bodies.size()};
         const double start = thread_time();
@@ -92,7 +91,8 @@ class InTesserae : public PeerEngine {
         advance_first_half(simulation, step, all);
         const double moved = thread_time();
         update_bounds(simulation, step, all);
-        sort_and_sweep.find_pairs(simulation, step);
+        kept_pairs.forget();  // with a search, which a step of the world makes now and then only
+        kept_pairs.find_pairs(simulation, step);
         const double paired = thread_time();
         step.contacts.clear();
         find_contacts(simulation, step, {0, step.pairs.size()}, step.contacts);
@@ -103,8 +103,8 @@ class InTesserae : public PeerEngine {
     }
 
     static StageTimes time_step(Simulation& simulation, StepData& step,
-                                parallel::SortAndSweep& sort_and_sweep, IslandBuilder& builder) {
-        StageTimes times = begin(simulation, step, sort_and_sweep);
+                                parallel::KeptPairs& kept_pairs, IslandBuilder& builder) {
+        StageTimes times = begin(simulation, step, kept_pairs);
         const Range all{0, simulation.bodies.size()};
         const double start = thread_time();
         begin_contacts(step);
@@ -135,6 +135,8 @@ class InTesserae : public PeerEngine {
         const double solved = thread_time();
         advance_second_half(simulation, step, all);
         for (std::size_t i = 0; i < step.islands.size(); ++i) relax_island(simulation, step, i);
+        step.pushing.clear();
+        list_pushing(step, {0, step.impulses.size()}, step.pushing);
         end_substep(simulation, step);
         times.others += thread_time() - solved;
         return times;

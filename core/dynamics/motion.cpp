@@ -75,13 +75,10 @@ void update_bounds(const Simulation& simulation, StepData& step, Range bodies) {
     const double rest = step.dt - step.substep * step.h;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const auto id = static_cast<BodyId>(i);
-        Vec4 half = Vec4::Constant(std::numeric_limits<double>::infinity());
-        Vec4 centre = Vec4::Zero();
-        if (simulation.type_of(id).bounded) {
-            centre = step.position[id];
-            half.setConstant(reach(simulation, step, id, rest));
-        }
-        step.bounds[id] = {centre - half, centre + half};
+        if (simulation.type_of(id).bounded)
+            step.bounds[id] = {step.position[id], reach(simulation, step, id, rest)};
+        else
+            step.bounds[id] = {Vec4::Zero(), std::numeric_limits<double>::infinity()};
     }
 }
 
@@ -90,10 +87,8 @@ bool outgrows_bounds(const Simulation& simulation, const StepData& step, Range b
         const auto id = static_cast<BodyId>(i);
         if (!simulation.type_of(id).bounded) continue;
         const Bounds& bounds = step.bounds[id];
-        const Vec4 centre = 0.5 * (bounds.lower + bounds.upper);
-        const double radius = 0.5 * (bounds.upper[0] - bounds.lower[0]);
-        const double moved = (step.position[id] - centre).norm();
-        if (moved + reach(simulation, step, id, step.h) > radius) return true;
+        const double moved = (step.position[id] - bounds.centre).norm();
+        if (moved + reach(simulation, step, id, step.h) > bounds.radius) return true;
     }
     return false;
 }

@@ -7,31 +7,17 @@
 namespace tesserae {
 namespace {
 
-bool overlap(const Bounds& a, const Bounds& b) {
-    return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
-}
-
-/// Whether the balls within two cubes overlap.
-bool balls_overlap(const Bounds& a, const Bounds& b) {
-    const Vec4 between = (a.lower + a.upper) - (b.lower + b.upper);
-    const double reach = (a.upper[0] - a.lower[0]) + (b.upper[0] - b.lower[0]);
-    return between.squaredNorm() <= reach * reach;
-}
-
-/// Whether a bounded body can reach an unbounded one, by the distance of its centre.
-bool reaches(const Simulation& simulation, const StepData& step, BodyId bounded, BodyId unbounded) {
-    const Bounds& bounds = step.bounds[bounded];
-    const double reach = 0.5 * (bounds.upper[0] - bounds.lower[0]);
-    return std::visit(
-        [&](const auto& shape) { return signed_distance(shape, step.position[bounded]) <= reach; },
-        simulation.bodies.type_of(unbounded).shape);
-}
-
 bool is_active(const Simulation& simulation, const StepData& step, BodyId id) {
     return (simulation.type_of(id).movable && !is_asleep(step, id)) || is_driven(simulation, id);
 }
 
 }  // namespace
+
+bool reaches(const Bounds& bounded, const Shape& unbounded) {
+    return std::visit(
+        [&](const auto& shape) { return signed_distance(shape, bounded.centre) <= bounded.radius; },
+        unbounded);
+}
 
 bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
     if (!overlap(step.bounds[a], step.bounds[b])) return false;  // the unbounded's are infinite
@@ -40,9 +26,9 @@ bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyI
     if (!type_a.movable && !type_b.movable) return false;
     if (!step.asleep.empty() && !is_active(simulation, step, a) && !is_active(simulation, step, b))
         return false;
-    if (!type_a.bounded) return reaches(simulation, step, b, a);
-    if (!type_b.bounded) return reaches(simulation, step, a, b);
-    return balls_overlap(step.bounds[a], step.bounds[b]);
+    if (!type_a.bounded) return reaches(step.bounds[b], simulation.bodies.type_of(a).shape);
+    if (!type_b.bounded) return reaches(step.bounds[a], simulation.bodies.type_of(b).shape);
+    return true;
 }
 
 void find_pairs(const Simulation& simulation, StepData& step) {

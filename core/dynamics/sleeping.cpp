@@ -11,9 +11,10 @@ bool is_still(const Simulation& simulation, const StepData& step, BodyId id) {
     return speed < kStill / kSlop * type.slop;
 }
 
-/// Of every island: its lowest movable body if it may fall asleep, else kAwake.
-std::vector<BodyId> islands_at_rest(const Simulation& simulation, const StepData& step) {
-    std::vector<BodyId> lowest(step.islands.size(), kAwake);
+/// step.lowest_of_island: its lowest movable body if it may fall asleep, else kAwake.
+void find_islands_at_rest(const Simulation& simulation, StepData& step) {
+    std::vector<BodyId>& lowest = step.lowest_of_island;
+    lowest.assign(step.islands.size(), kAwake);
     for (std::size_t island = 0; island < lowest.size(); ++island) {
         bool rests = true;
         for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
@@ -28,10 +29,15 @@ std::vector<BodyId> islands_at_rest(const Simulation& simulation, const StepData
         }
         if (!rests) lowest[island] = kAwake;
     }
-    return lowest;
 }
 
 }  // namespace
+
+bool touches_sleeper(const StepData& step, Range contacts) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
+        if (is_asleep(step, step.contacts[i].a) || is_asleep(step, step.contacts[i].b)) return true;
+    return false;
+}
 
 bool wake_touched(StepData& step) {
     if (step.asleep.empty()) return false;
@@ -59,8 +65,10 @@ void fall_asleep(Simulation& simulation, StepData& step) {
     }
 
     // A body without contacts is an island of its own.
-    const std::vector<BodyId> lowest = islands_at_rest(simulation, step);
-    std::vector<BodyId> next(count);
+    find_islands_at_rest(simulation, step);
+    const std::vector<BodyId>& lowest = step.lowest_of_island;
+    std::vector<BodyId>& next = step.next_asleep;
+    next.resize(count);
     for (BodyId id = 0; id < count; ++id) {
         const bool rests = simulation.type_of(id).movable && !is_driven(simulation, id) &&
                            still[id] >= kTimeToSleep;

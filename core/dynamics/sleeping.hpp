@@ -13,6 +13,9 @@ constexpr double kStill = 10 * kSlop;
 /// thrown upward is at its highest point.
 constexpr double kTimeToSleep = 0.5;
 
+/// Whether a contact of the range reaches a body that sleeps.
+bool touches_sleeper(const StepData& step, Range contacts);
+
 /// The sleeping islands that a contact reaches are awake from now on. Their bodies' contacts among
 /// themselves have then not been looked for: look again.
 /// @return whether any woke

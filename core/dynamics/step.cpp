@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -85,34 +84,45 @@ void begin_contacts(StepData& step) {
     step.residual.clear();
 }
 
-void require_finite(const Simulation& simulation, const StepData& step) {
-    for (std::size_t i = 0; i < step.position.size(); ++i) {
+bool is_finite(const StepData& step, Range bodies) {
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const Rotor& r = step.rotor[i];
         const double squares = step.position[i].squaredNorm() + step.velocity[i].squaredNorm() +
                                dot(step.angular_velocity[i], step.angular_velocity[i]) +
                                (r.s * r.s + dot(r.b, r.b) + r.p * r.p);
-        if (!std::isfinite(squares))
-            throw LeftFiniteRange(static_cast<BodyId>(i), simulation.memory.time + step.dt);
+        if (!std::isfinite(squares)) return false;
     }
+    return true;
+}
+
+void require_finite(const Simulation& simulation, const StepData& step) {
+    for (std::size_t i = 0; i < step.position.size(); ++i)
+        if (!is_finite(step, {i, i + 1}))
+            throw LeftFiniteRange(static_cast<BodyId>(i), simulation.memory.time + step.dt);
+}
+
+void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpulse>& list) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
+        if (step.impulses[i].normal > 0) list.push_back(step.impulses[i]);
 }
 
 void end_substep(const Simulation& simulation, StepData& step) {
-    std::vector<ContactImpulse> own, kept, all;
-    own.reserve(step.impulses.size());
-    for (const ContactImpulse& impulse : step.impulses)
-        if (impulse.normal > 0) own.push_back(impulse);
-    if (!step.asleep.empty())
-        for (const ContactImpulse& impulse : last_impulses(simulation, step))
-            if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) kept.push_back(impulse);
-    if (kept.empty()) {
-        step.recalled = std::move(own);
+    if (step.asleep.empty()) {
+        step.recalled.swap(step.pushing);
         return;
     }
-    // Not std::inplace_merge: its buffer does not heed the alignment of vectors.
-    all.reserve(own.size() + kept.size());
-    std::merge(own.begin(), own.end(), kept.begin(), kept.end(), std::back_inserter(all),
-               [](const auto& i, const auto& j) { return key_of(i) < key_of(j); });
-    step.recalled = std::move(all);
+    // Merge. The last impulses may be step.recalled, so that the list is another one.
+    std::vector<ContactImpulse>& all = step.merged_impulses;
+    all.clear();
+    auto own = step.pushing.begin();
+    for (const ContactImpulse& impulse : last_impulses(simulation, step)) {
+        if (!is_asleep(step, impulse.a) && !is_asleep(step, impulse.b)) continue;
+        for (; own != step.pushing.end() && key_of(*own) < key_of(impulse); ++own)
+            all.push_back(*own);
+        all.push_back(impulse);
+    }
+    all.insert(all.end(), own, step.pushing.end());
+    step.recalled.swap(all);
 }
 
 StepReport commit_step(Simulation& simulation, StepData& step) {

@@ -25,10 +25,16 @@ void begin_step(const Simulation& simulation, StepData& step, double dt);
 /// Sizes the sub-step's arrays of contacts, once these are known.
 void begin_contacts(StepData& step);
 
+/// Whether the motion of all bodies in the range is.
+bool is_finite(const StepData& step, Range bodies);
+
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);
 
-/// Keeps the sub-step's impulses for the next one, beside those of bodies that sleep.
+/// Appends those of step.impulses in the range that are > 0.
+void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpulse>& list);
+
+/// Keeps step.pushing for the next sub-step, beside the impulses of bodies that sleep.
 void end_substep(const Simulation& simulation, StepData& step);
 
 /// Makes the step's result the present state, and what the next one needs of it the memory.

@@ -18,10 +18,11 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// The cube about the ball, centred where the body is, that holds all that it can reach in the rest
-/// of the step. Infinite if unbounded.
+/// The ball that holds all that a body can reach in the rest of the step.
 struct Bounds {
-    Vec4 lower, upper;  ///< world [m]
+    Vec4 centre =
+        Vec4::Zero();   ///< where the body is when they are made, world [m]; 0 if unbounded
+    double radius = 0;  ///< [m]; infinite if unbounded
 };
 
 /// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
@@ -109,9 +110,14 @@ struct StepData {
     Islands islands;
     std::vector<ContactRow> rows;          ///< in the order of islands.contacts
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
+    std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
     std::vector<double> residual;          ///< of every island [m/s]
     std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
+
+    /// Made and used within one stage; here so that their memory is kept.
+    std::vector<ContactImpulse> merged_impulses;
+    std::vector<BodyId> lowest_of_island, next_asleep;
 };
 
 /// Contacts and their impulses are in ascending order of this.

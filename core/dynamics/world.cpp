@@ -67,6 +67,8 @@ void World::advance_second_half() {
 void World::relax_islands() {
     for (std::size_t island = 0; island < step_.islands.size(); ++island)
         relax_island(simulation_, step_, island);
+    step_.pushing.clear();
+    list_pushing(step_, {0, step_.impulses.size()}, step_.pushing);
     end_substep(simulation_, step_);
 }
 

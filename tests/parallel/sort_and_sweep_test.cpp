@@ -33,10 +33,22 @@ StepData prepared(const Simulation& simulation) {
 /// Compares with testing every two bodies, and with the spheres that touch by their distances.
 void check(const Bodies& bodies, SortAndSweep& sort_and_sweep, Threads& threads) {
     const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
-    StepData step = prepared(simulation), reference = step;
-    threads.run([&] { sort_and_sweep.find_pairs(simulation, step); });
-    tesserae::find_pairs(simulation, reference);
-    ASSERT_EQ(step.pairs, reference.pairs);
+    StepData step = prepared(simulation);
+    std::vector<BodyPair> found, exact;
+    threads.run([&] { sort_and_sweep.find_pairs(simulation, step.bounds, found); });
+    tesserae::find_pairs(simulation, step);
+    // What it finds beyond that misses by rounding: 1e-12 of a radius, 1e-13 of the place.
+    for (const auto [a, b] : found) {
+        if (is_pair(simulation, step, a, b)) exact.push_back({a, b});
+        const auto larger = [&](Bounds bounds) {
+            bounds.radius += 2e-12 * bounds.radius + 2e-13 * bounds.centre.norm();
+            return bounds;
+        };
+        const bool bounded = simulation.type_of(a).bounded && simulation.type_of(b).bounded;
+        ASSERT_TRUE(!bounded || overlap(larger(step.bounds[a]), larger(step.bounds[b])));
+    }
+    ASSERT_EQ(exact, step.pairs);
+    ASSERT_TRUE(std::is_sorted(found.begin(), found.end()));
 
     for (BodyId a = 0; a < bodies.size(); ++a)
         for (BodyId b = a + 1; b < bodies.size(); ++b) {
@@ -83,6 +95,63 @@ TEST(SortAndSweep, FindsCoincidentAndTouchingBodies) {
     for (int i = 0; i < 40; ++i) add(bodies, sphere_type(0.5), {-10, 0, 0, 10.0 + i});
     check(bodies, sort_and_sweep, threads);
     check(Bodies{}, sort_and_sweep, threads);
+}
+
+/// 0.1 + 0.2 is rounded up to their distance, though they miss each other by 1e-17.
+TEST(SortAndSweep, FindsBallsThatOverlapByRounding) {
+    Bodies bodies;
+    for (int i = 0; i < 2; ++i) add(bodies, sphere_type(0.1));
+    const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
+    SortAndSweep sort_and_sweep;
+    Threads threads(1);
+    for (int axis = 0; axis < 4; ++axis) {
+        const std::vector<Bounds> bounds = {{Vec4::Zero(), 0.1},
+                                            {(0.1 + 0.2) * Vec4::Unit(axis), 0.2}};
+        ASSERT_TRUE(overlap(bounds[0], bounds[1]));
+        std::vector<BodyPair> pairs;
+        threads.run([&] { sort_and_sweep.find_pairs(simulation, bounds, pairs); });
+        EXPECT_EQ(pairs, (std::vector<BodyPair>{{0, 1}})) << axis;
+    }
+}
+
+/// Each body is of another size: sixty powers of two, among which some are rare.
+TEST(SortAndSweep, FindsThePairsOfVeryManySizes) {
+    std::mt19937_64 engine(5);
+    std::uniform_real_distribution<> unit(-1, 1);
+    SortAndSweep sort_and_sweep;
+    Threads threads(2);
+    for (int round = 0; round < 10; ++round) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0));
+        for (int i = 0; i < 400; ++i) {
+            const double power = 30 * unit(engine);
+            const double size =
+                std::pow(2.0, round % 2 == 0 ? power : power * std::abs(unit(engine)));
+            Vec4 x;
+            for (int k = 0; k < 4; ++k) x[k] = 3 * size * unit(engine);
+            add(bodies, sphere_type(size), x);
+        }
+        check(bodies, sort_and_sweep, threads);
+    }
+}
+
+/// Where neighbouring numbers are up to 1/500 m apart, and farther than the last cell.
+TEST(SortAndSweep, FindsThePairsFarFromTheOrigin) {
+    std::mt19937_64 engine(7);
+    std::uniform_real_distribution<> unit(-1, 1);
+    SortAndSweep sort_and_sweep;
+    Threads threads(2);
+    for (const double far : {1e6, 1e9, 1e13})
+        for (int round = 0; round < 8; ++round) {
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitX(), far));
+            for (int i = 0; i < 300; ++i) {
+                Vec4 x = (i % 3 == 0 ? -1 : round % 2 + 1) * far * Vec4(1, 0.1, -1, 0.5);
+                for (int k = 0; k < 4; ++k) x[k] += 4 * unit(engine);
+                add(bodies, sphere_type(0.2 + 0.2 * (i % 5)), x);
+            }
+            check(bodies, sort_and_sweep, threads);
+        }
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+// What the engine takes from operator new in a step of a pile that has settled.
+
+#include <gtest/gtest.h>
+
+#include <new>
+#include <vector>
+
+#include "core/dynamics/world.hpp"
+#include "parallel/parallel_world.hpp"
+#include "parallel/threads.hpp"
+#include "tests/core/dynamics/builder.hpp"
+#include "tests/parallel/counted_new.hpp"
+
+namespace tesserae::parallel {
+namespace {
+
+using namespace tesserae::testing;
+
+/// A pile of 6^4 spheres put down touching between walls, which is one large island, beside stacks
+/// of two boxes, which are many small ones.
+Bodies resting_bodies() {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (const int axis : {2, 3})
+        for (const double side : {-1.0, 1.0})
+            add(bodies, plane_type(side * Vec4::Unit(axis), -3, 0.5));
+    for (int i = 0; i < 1296; ++i)
+        add(bodies, sphere_type(0.5, 1, 0.5),
+            {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+    for (int i = 0; i < 20; ++i)
+        add(bodies, box_type(Vec4::Ones(), 10), {10 + 2.0 * (i / 2), 0.5 + i % 2, 0, 0});
+    return bodies;
+}
+
+/// Allocations of ten steps after so many.
+template <class AnyWorld>
+std::uint64_t allocations_after(AnyWorld& world, int steps) {
+    for (int i = 0; i < steps; ++i) world.step(1.0 / 240);
+    const std::uint64_t before = allocations();
+    std::uint64_t contacts = 0;
+    for (int i = 0; i < 10; ++i) contacts += world.step(1.0 / 240).contacts;
+    EXPECT_GT(contacts, 1000u);
+    return allocations() - before;
+}
+
+TEST(Allocations, AreCounted) {
+    const std::uint64_t before = allocations();
+    // Called by name: a new expression may be left out.
+    void* const plain = ::operator new(8);
+    void* const aligned = ::operator new (64, std::align_val_t{32});
+    EXPECT_EQ(allocations() - before, 2u);
+    ::operator delete(plain);
+    ::operator delete (aligned, std::align_val_t{32});
+}
+
+TEST(Allocations, AreNoneInASettledStep) {
+    for (const bool sleeping : {false, true})
+        for (PhysicsSettings settings : {PhysicsSettings{}, soft_settings()}) {
+            settings.sleeping = sleeping;
+            // With sleeping: before and after all have fallen asleep.
+            for (const int steps : sleeping ? std::vector{60, 200} : std::vector{60}) {
+                if (steps == 60) {
+                    World world(resting_bodies(), settings);
+                    EXPECT_EQ(allocations_after(world, steps), 0u) << sleeping;
+                }
+                ParallelWorld world(resting_bodies(), settings);
+                Threads threads(2);
+                threads.run([&] { EXPECT_EQ(allocations_after(world, steps), 0u) << sleeping; });
+            }
+        }
+}
+
+}  // namespace
+}  // namespace tesserae::parallel
