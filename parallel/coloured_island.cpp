@@ -5,83 +5,48 @@
 
 #include <algorithm>
 
+#include "core/dynamics/wide_solver.hpp"
 #include "parallel/chunks.hpp"
 
 namespace tesserae::parallel {
 namespace {
 
-/// Contacts of one task: some 5 us of a sweep.
-constexpr std::size_t kGrain = 128;
+/// Items of one task: some 5 us of work.
+constexpr std::size_t kBodyGrain = 512;
+constexpr std::size_t kPointGrain = 1024;
 
-/// The island's colours in order, and what is left over as the last.
-struct Colours {
-    const Islands& islands;
-    std::size_t island;
-
-    std::size_t size() const {
-        return islands.first_colour[island + 1] - islands.first_colour[island] + 1;
+struct AllThreads {
+    template <class Work>
+    void for_bodies(Range bodies, const Work& work) const {
+        for_each_range(bodies.end - bodies.begin, kBodyGrain, [&](Range piece) {
+            work(Range{bodies.begin + piece.begin, bodies.begin + piece.end});
+        });
     }
-    bool is_leftover(std::size_t colour) const { return colour + 1 == size(); }
-    Range operator[](std::size_t colour) const {
-        const std::uint32_t* const ends = islands.colours.data() + islands.first_colour[island];
-        return {colour == 0 ? islands.first[island] : ends[colour - 1],
-                is_leftover(colour) ? islands.first[island + 1] : ends[colour]};
+    template <class Work>
+    double largest(BatchRange batches, std::size_t points, const Work& work) const {
+        const auto grain = static_cast<std::uint32_t>(kPointGrain / kLanes / points);
+        const std::uint32_t count = batches.end - batches.begin;
+        const std::uint32_t chunks = (count + grain - 1) / grain;
+        if (chunks <= 1) return OneThread{}.largest(batches, points, work);
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::uint32_t>(0, chunks, 1), 0.0,
+            [&](const tbb::blocked_range<std::uint32_t>& range, double largest) {
+                const BatchRange piece{batches.begin + range.begin() * grain,
+                                       batches.begin + std::min(count, range.end() * grain)};
+                return std::max(largest, work(piece));
+            },
+            [](double a, double b) { return std::max(a, b); });
     }
 };
-
-Range moved(Range range, std::size_t by) { return {range.begin + by, range.end + by}; }
-
-/// Calls work(Range) for pieces of the colour at once.
-template <class Work>
-void for_places(Range places, const Work& work) {
-    for_each_range(places.end - places.begin, kGrain,
-                   [&](Range piece) { work(moved(piece, places.begin)); });
-}
-
-double sweep_colour(const Simulation& simulation, StepData& step, Range places, Sweep sweep) {
-    const std::size_t count = places.end - places.begin, chunks = (count + kGrain - 1) / kGrain;
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, chunks, 1), 0.0,
-        [&](const tbb::blocked_range<std::size_t>& range, double largest) {
-            const Range piece{places.begin + range.begin() * kGrain,
-                              places.begin + std::min(count, range.end() * kGrain)};
-            return std::max(largest, sweep_contacts(simulation, step, piece, sweep));
-        },
-        [](double a, double b) { return std::max(a, b); });
-}
-
-void iterate(const Simulation& simulation, StepData& step, std::size_t island, Pass pass) {
-    const Colours colours{step.islands, island};
-    double residual = 0;
-    for (int i = 0; i < simulation.settings.iterations; ++i) {
-        const Sweep sweep = sweep_of(simulation, pass, i);
-        for (std::size_t k = 0; k < colours.size(); ++k) {
-            const std::size_t colour = sweep.backward ? colours.size() - 1 - k : k;
-            const double change = colours.is_leftover(colour)
-                                      ? sweep_contacts(simulation, step, colours[colour], sweep)
-                                      : sweep_colour(simulation, step, colours[colour], sweep);
-            residual = std::max(residual, change);
-        }
-    }
-    step.residual[island] = residual;
-}
 
 }  // namespace
 
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Colours colours{step.islands, island};
-    for_places(step.islands.places(island),
-               [&](Range places) { make_rows(simulation, step, places); });
-    for (std::size_t colour = 0; colour + 1 < colours.size(); ++colour)
-        for_places(colours[colour], [&](Range places) { warm_start(simulation, step, places); });
-    warm_start(simulation, step, colours[colours.size() - 1]);
-    iterate(simulation, step, island, Pass::kSolve);
+    solve_wide_island(simulation, step, island, AllThreads{});
 }
 
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (simulation.settings.solver == Solver::kSoft)
-        iterate(simulation, step, island, Pass::kRelax);
-    for_places(step.islands.places(island), [&](Range places) { keep_impulses(step, places); });
+    relax_wide_island(simulation, step, island, AllThreads{});
 }
 
 }  // namespace tesserae::parallel

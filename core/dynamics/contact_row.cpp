@@ -8,8 +8,6 @@
 namespace tesserae {
 namespace {
 
-/// Below this part of what the bodies' inverse masses allow, a response is rounding: nothing there
-/// can move (a sphere whose position is fixed, pushed through its centre).
 constexpr double kNoResponse = 1e-9;
 
 /// Change of velocity at an offset r of a body by an impulse there.
@@ -32,11 +30,10 @@ void set_masses(const Simulation& simulation, const StepData& step, ContactRow& 
                response(simulation, step, row.b, row.r_b, impulse);
     };
     const Vec4& n = row.normal;
-    const double rounding = kNoResponse * (greatest_response(simulation.type_of(row.a)) +
-                                           greatest_response(simulation.type_of(row.b)));
+    const double rounding = least_response(simulation, row.a, row.b);
     row.normal_response = both(n);
     const double along = n.dot(row.normal_response);
-    row.solve.mass = row.relax.mass = along > rounding ? 1 / along : 0;
+    row.relax.mass = along > rounding ? 1 / along : 0;
 
     row.tangent_mass.setZero();
     if (row.friction == 0) return;
@@ -64,52 +61,72 @@ double rebound_velocity(double e, double v0, double g, double s, double h) {
 }
 
 /// What keeps bodies apart or takes them apart when they are s from touching.
-void set_targets(const Simulation& simulation, double h, double s, ContactRow& row) {
-    const double slop = std::min(simulation.type_of(row.a).slop, simulation.type_of(row.b).slop);
+ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact) {
+    const double s = contact.separation;
+    const double slop =
+        std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
+    ContactTargets targets;
     if (s > -slop) {
-        row.solve.target = row.relax.target = s > 0 ? -s / h : 0;
-        return;
+        targets.solve = targets.relax = s > 0 ? -s / h : 0;
+        return targets;
     }
     const double depth = -(s + slop);
     const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
     if (simulation.settings.solver == Solver::kImpulse) {
-        row.solve.target = std::min(fastest, kBiasPart / h * depth);
-        return;
+        targets.solve = std::min(fastest, kBiasPart / h * depth);
+        return targets;
     }
     // A spring of angular frequency w, integrated implicitly. Its velocity acts on the second half
     // of the sub-step only, so that it has to be twice as large.
     constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
     constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
-    row.solve.target = std::min(fastest, 2 * kAngle / kSum / h * depth);
-    row.solve.mass *= kStiff / (1 + kStiff);
-    row.solve.keep = kStiff / (1 + kStiff);
+    targets.solve = std::min(fastest, 2 * kAngle / kSum / h * depth);
+    targets.keep = kStiff / (1 + kStiff);
+    return targets;
 }
 
 /// Restitution, where the bodies meet fast enough: the larger of the two targets, rigid.
-void add_rebound(const Simulation& simulation, const StepData& step, double s, ContactRow& row) {
-    const TypeProperties& a = simulation.type_of(row.a);
-    const TypeProperties& b = simulation.type_of(row.b);
-    const double e = std::max(a.restitution, b.restitution), h = step.h;
+void add_rebound(const Simulation& simulation, double h, const Contact& contact,
+                 double normal_velocity, ContactTargets& targets) {
+    const TypeProperties& a = simulation.type_of(contact.a);
+    const TypeProperties& b = simulation.type_of(contact.b);
+    const double e = std::max(a.restitution, b.restitution);
     if (e == 0) return;
     const Vec4& gravity = simulation.settings.gravity;
     const double slowest = a.falls || b.falls ? kRestitutionKicks * h * gravity.norm() : 0;
-    const double g = (a.falls - b.falls) * row.normal.dot(gravity);
-    const double v1 = -row.normal.dot(relative_velocity(step, row)), v0 = v1 - h * g;
+    const double g = (a.falls - b.falls) * contact.normal.dot(gravity);
+    const double s = contact.separation, v1 = -normal_velocity, v0 = v1 - h * g;
     if (s > h * v1) {
         // Do not meet in this sub-step unless another contact drives them together. Stopping them
         // at each other's surface would lose that energy: they may overlap, by half of the smaller
         // one at most, and bounce in the next sub-step.
         const double half_size = std::min(a.slop, b.slop) / kSlop;
-        row.solve.target = row.relax.target = -(s + 0.5 * half_size) / h;
+        targets.solve = targets.relax = -(s + 0.5 * half_size) / h;
         return;
     }
     if (!(v0 > slowest)) return;
     const double rebound = rebound_velocity(e, v0, g, s, h);
-    row.relax.target = std::max(row.relax.target, rebound);
-    if (rebound > row.solve.target) row.solve = row.relax;
+    targets.relax = std::max(targets.relax, rebound);
+    if (rebound > targets.solve) targets.solve = targets.relax, targets.keep = 1;
 }
 
 }  // namespace
+
+ContactTargets targets_of(const Simulation& simulation, const StepData& step,
+                          const Contact& contact, double normal_velocity) {
+    ContactTargets targets = targets_of_overlap(simulation, step.h, contact);
+    add_rebound(simulation, step.h, contact, normal_velocity, targets);
+    return targets;
+}
+
+double friction_of(const Simulation& simulation, BodyId a, BodyId b) {
+    return std::sqrt(simulation.type_of(a).friction * simulation.type_of(b).friction);
+}
+
+double least_response(const Simulation& simulation, BodyId a, BodyId b) {
+    return kNoResponse *
+           (greatest_response(simulation.type_of(a)) + greatest_response(simulation.type_of(b)));
+}
 
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact,
                     const ContactImpulse& impulse) {
@@ -119,11 +136,12 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
     row.normal = contact.normal;
     row.r_a = contact.point - step.position[row.a];
     row.r_b = contact.point - step.position[row.b];
-    row.friction =
-        std::sqrt(simulation.type_of(row.a).friction * simulation.type_of(row.b).friction);
+    row.friction = friction_of(simulation, row.a, row.b);
     set_masses(simulation, step, row);
-    set_targets(simulation, step.h, contact.separation, row);
-    add_rebound(simulation, step, contact.separation, row);
+    const double normal_velocity = row.normal.dot(relative_velocity(step, row));
+    const ContactTargets targets = targets_of(simulation, step, contact, normal_velocity);
+    row.relax.target = targets.relax;
+    row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 
     // The normal may have turned since the impulse was.
     row.normal_impulse = impulse.normal;

@@ -24,6 +24,22 @@ constexpr double kLargestPush = 4;
 /// ends too soon. Where there is no gravity every approach bounces.
 constexpr double kRestitutionKicks = 4;
 
+/// What a row aims at, along the normal; see NormalPass.
+struct ContactTargets {
+    double keep = 1;   ///< of the solve pass
+    double solve = 0;  ///< [m/s]
+    double relax = 0;  ///< [m/s]
+};
+/// @param normal_velocity   at which the bodies part, as make_row() needs the velocities [m/s]
+ContactTargets targets_of(const Simulation& simulation, const StepData& step,
+                          const Contact& contact, double normal_velocity);
+
+double friction_of(const Simulation& simulation, BodyId a, BodyId b);
+
+/// Below this part of what the bodies' inverse masses allow, a response is rounding: nothing there
+/// can move (a sphere whose position is fixed, pushed through its centre) [1/kg].
+double least_response(const Simulation& simulation, BodyId a, BodyId b);
+
 /// The contact in the middle of the sub-step. Needs the velocities before any impulse of the
 /// sub-step and after gravity.
 /// @param impulse   where to start from

@@ -1,7 +1,6 @@
 #include "core/dynamics/islands.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -18,14 +17,23 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     sort_by_island(simulation, step);
     Islands& islands = step.islands;
     step.residual.resize(islands.size());
-    islands.first_colour.assign(1, 0);
-    islands.colours.clear();
-    used_.assign(simulation.bodies.size(), 0);
+    islands.coloured.assign(islands.size(), Islands::kNotColoured);
+    islands.first_row.assign(islands.size(), 0);
+    colouring_.begin(simulation, step);
+    std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const Range places = islands.places(island);
-        if (places.end - places.begin >= kColouredFrom) colour(simulation, step, island);
-        islands.first_colour.push_back(static_cast<std::uint32_t>(islands.colours.size()));
+        const auto size = static_cast<std::uint32_t>(places.end - places.begin);
+        if (size >= coloured_from_) {
+            colouring_.add(simulation, step, island);
+            islands.coloured[island] = coloured++;
+        } else {
+            islands.first_row[island] = rows;
+            rows += size;
+        }
     }
+    colouring_.end(simulation, step);
+    step.rows.resize(rows);
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
@@ -62,38 +70,6 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     // Filling moved each start to its island's end: shift them back.
     std::shift_right(islands.first.begin(), islands.first.end(), 1);
     islands.first.front() = 0;
-}
-
-/// Each contact, in order, gets the first colour that none of its movable bodies has yet.
-void IslandBuilder::colour(const Simulation& simulation, StepData& step, std::size_t island) {
-    constexpr int kColours = 64;
-    const Range places = step.islands.places(island);
-    const auto begin = step.islands.contacts.begin() + static_cast<std::ptrdiff_t>(places.begin);
-    const std::size_t size = places.end - places.begin;
-    std::uint32_t count[kColours + 1] = {};  // the last one: left over
-    colour_.resize(size);
-    for (std::size_t i = 0; i < size; ++i) {
-        const Contact& c = step.contacts[begin[static_cast<std::ptrdiff_t>(i)]];
-        std::uint64_t taken = 0;
-        for (const BodyId id : {c.a, c.b})
-            if (simulation.type_of(id).movable) taken |= used_[id];
-        const int colour = std::countr_one(taken);  // 64 if all are taken
-        colour_[i] = static_cast<std::uint8_t>(colour);
-        ++count[colour];
-        if (colour == kColours) continue;
-        for (const BodyId id : {c.a, c.b})
-            if (simulation.type_of(id).movable) used_[id] |= std::uint64_t{1} << colour;
-    }
-
-    // Counting sort.
-    std::uint32_t start[kColours + 1];
-    std::exclusive_scan(std::begin(count), std::end(count), start, 0u);
-    sorted_.resize(size);
-    for (std::size_t i = 0; i < size; ++i)
-        sorted_[start[colour_[i]]++] = begin[static_cast<std::ptrdiff_t>(i)];
-    std::copy(sorted_.begin(), sorted_.end(), begin);
-    for (int colour = 0; colour < kColours && count[colour] > 0; ++colour)
-        step.islands.colours.push_back(static_cast<std::uint32_t>(places.begin) + start[colour]);
 }
 
 }  // namespace tesserae

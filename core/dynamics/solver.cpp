@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/dynamics/contact_row.hpp"
+#include "core/dynamics/wide_solver.hpp"
 
 namespace tesserae {
 namespace {
@@ -58,11 +60,13 @@ double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) 
     return change;
 }
 
+/// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
 template <NormalPass ContactRow::*kPass>
-double sweep_rows(const Simulation& simulation, StepData& step, Range places, Sweep sweep) {
+double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
+                  Sweep sweep) {
     double residual = 0;
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        ContactRow& row = step.rows[sweep.backward ? places.begin + (places.end - 1 - i) : i];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
         const double change = solve_row<kPass>(simulation, step, row);
         if (sweep.last && change != 0)
             residual = std::max(residual, std::abs(change) / row.relax.mass);
@@ -70,11 +74,41 @@ double sweep_rows(const Simulation& simulation, StepData& step, Range places, Sw
     return residual;
 }
 
-double iterate(const Simulation& simulation, StepData& step, Range places, Pass pass) {
+double iterate(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
+               Pass pass) {
     double residual = 0;
-    for (int i = 0; i < simulation.settings.iterations; ++i)
-        residual = sweep_contacts(simulation, step, places, sweep_of(simulation, pass, i));
+    for (int i = 0; i < simulation.settings.iterations; ++i) {
+        const Sweep sweep = sweep_of(simulation, pass, i);
+        residual = pass == Pass::kSolve
+                       ? sweep_rows<&ContactRow::solve>(simulation, step, rows, sweep)
+                       : sweep_rows<&ContactRow::relax>(simulation, step, rows, sweep);
+    }
     return residual;
+}
+
+std::span<ContactRow> rows_of(StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    return {&step.rows[step.islands.first_row[island]], places.end - places.begin};
+}
+
+std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    return {&step.islands.contacts[places.begin], places.end - places.begin};
+}
+
+void make_rows(const Simulation& simulation, StepData& step, std::size_t island) {
+    ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t contact : contacts_of(step, island))
+        *row++ = make_row(simulation, step, step.contacts[contact], step.impulses[contact]);
+}
+
+void keep_impulses(StepData& step, std::size_t island) {
+    const ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t contact : contacts_of(step, island)) {
+        ContactImpulse& impulse = step.impulses[contact];
+        impulse.normal = row->normal_impulse;
+        impulse.tangent = (row++)->tangent_impulse;
+    }
 }
 
 }  // namespace
@@ -95,46 +129,22 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
     }
 }
 
-void make_rows(const Simulation& simulation, StepData& step, Range places) {
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        const std::uint32_t contact = step.islands.contacts[i];
-        step.rows[i] = make_row(simulation, step, step.contacts[contact], step.impulses[contact]);
-    }
-}
-
-void warm_start(const Simulation& simulation, StepData& step, Range places) {
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        const ContactRow& row = step.rows[i];
-        apply_impulse(simulation, step, row, row.normal_impulse * row.normal + row.tangent_impulse);
-    }
-}
-
-double sweep_contacts(const Simulation& simulation, StepData& step, Range places, Sweep sweep) {
-    return sweep.pass == Pass::kSolve
-               ? sweep_rows<&ContactRow::solve>(simulation, step, places, sweep)
-               : sweep_rows<&ContactRow::relax>(simulation, step, places, sweep);
-}
-
-void keep_impulses(StepData& step, Range places) {
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        ContactImpulse& impulse = step.impulses[step.islands.contacts[i]];
-        impulse.normal = step.rows[i].normal_impulse;
-        impulse.tangent = step.rows[i].tangent_impulse;
-    }
-}
-
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Range places = step.islands.places(island);
-    make_rows(simulation, step, places);
-    warm_start(simulation, step, places);
-    step.residual[island] = iterate(simulation, step, places, Pass::kSolve);
+    if (step.islands.is_coloured(island))
+        return solve_wide_island(simulation, step, island, OneThread{});
+    make_rows(simulation, step, island);
+    const std::span<ContactRow> rows = rows_of(step, island);
+    for (const ContactRow& row : rows)
+        apply_impulse(simulation, step, row, row.normal_impulse * row.normal + row.tangent_impulse);
+    step.residual[island] = iterate(simulation, step, rows, Pass::kSolve);
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Range places = step.islands.places(island);
+    if (step.islands.is_coloured(island))
+        return relax_wide_island(simulation, step, island, OneThread{});
     if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] = iterate(simulation, step, places, Pass::kRelax);
-    keep_impulses(step, places);
+        step.residual[island] = iterate(simulation, step, rows_of(step, island), Pass::kRelax);
+    keep_impulses(step, island);
 }
 
 }  // namespace tesserae

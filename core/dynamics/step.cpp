@@ -79,7 +79,6 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
 }
 
 void begin_contacts(StepData& step) {
-    step.rows.resize(step.contacts.size());
     step.impulses.resize(step.contacts.size());
     step.residual.clear();
 }

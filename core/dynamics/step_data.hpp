@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/dynamics/memory.hpp"
 #include "core/dynamics/settings.hpp"
 #include "core/dynamics/type_properties.hpp"
+#include "core/dynamics/wide_rows.hpp"
 
 namespace tesserae {
 
@@ -39,22 +41,21 @@ struct BodyPair {
 /// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
 /// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved.
 ///
-/// A small one is in ascending order of (a, b, feature). A large one is in order of colours, and in
-/// that order within each: no two contacts of a colour share a movable body, so that any number of
-/// threads may solve them at once and get the same bits. Its colours end at the places
-/// colours[first_colour[k]] to colours[first_colour[k + 1]]; what is left behind the last colour is
-/// solved one by one.
+/// They are in ascending order of (a, b, feature), and the contacts of small islands are solved in
+/// it, one by one. Large ones are coloured and solved in order of the batches that ColouredIslands
+/// has of them.
 struct Islands {
+    static constexpr std::uint32_t kNotColoured = std::numeric_limits<std::uint32_t>::max();
+
     std::vector<std::uint32_t> first = {0};
-    std::vector<std::uint32_t> contacts;  ///< places in the list of contacts
-    std::vector<std::uint32_t> first_colour = {0};
-    std::vector<std::uint32_t> colours;  ///< places in `contacts`
+    std::vector<std::uint32_t> contacts;   ///< places in the list of contacts
+    std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
+                                           ///< kNotColoured
+    std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }
     Range places(std::size_t island) const { return {first[island], first[island + 1]}; }
-    bool is_coloured(std::size_t island) const {
-        return first_colour[island] != first_colour[island + 1];
-    }
+    bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 
 /// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
@@ -108,7 +109,8 @@ struct StepData {
     std::vector<BodyPair> pairs;    ///< ascending
     std::vector<Contact> contacts;  ///< ascending (a, b, feature)
     Islands islands;
-    std::vector<ContactRow> rows;          ///< in the order of islands.contacts
+    std::vector<ContactRow> rows;          ///< of islands that are not coloured
+    ColouredIslands wide;                  ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next

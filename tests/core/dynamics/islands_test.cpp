@@ -76,53 +76,74 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
     }
 }
 
-/// Body 0 is fixed, body 1 touches all others, and these touch at random.
-TEST(Islands, OfManyContactsAreSortedByColoursThatShareNoMovableBody) {
+/// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
+/// to eight points.
+TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
     std::mt19937_64 engine(7);
     Bodies bodies;
     constexpr BodyId kCount = 700;
     BodyType fixed = sphere_type(1);
     fixed.fixed_position = fixed.fixed_rotation = true;
-    for (BodyId id = 0; id < kCount; ++id) add(bodies, id == 0 ? fixed : sphere_type(1));
+    for (BodyId id = 0; id < kCount; ++id)
+        add(bodies, id == 0 ? fixed : id % 2 == 0 ? sphere_type(1) : box_type({1, 2, 3, 4}));
     StepData step;
+    std::size_t pairs = 0;
     for (BodyId a = 0; a < kCount; ++a)
         for (BodyId b = a + 1; b < kCount; ++b)
             if (a < 2 || engine() % 100 == 0) {
-                Contact contact;
-                contact.a = a, contact.b = b;
-                step.contacts.push_back(contact);
+                const std::uint64_t points = a % 2 == 0 && b % 2 == 0 ? 1 : 1 + engine() % 8;
+                for (std::uint32_t i = 0; i < points; ++i) {
+                    Contact contact;
+                    contact.a = a, contact.b = b, contact.feature = i;
+                    step.contacts.push_back(contact);
+                }
+                ++pairs;
             }
     IslandBuilder builder;
     builder.build(make_simulation(bodies, PhysicsSettings{}), step);
 
-    const Islands& islands = step.islands;
-    ASSERT_EQ(islands.size(), 1u);
-    ASSERT_GE(step.contacts.size(), kColouredFrom);
-    ASSERT_TRUE(islands.is_coloured(0));
-    std::vector<std::uint32_t> all = islands.contacts;
-    std::sort(all.begin(), all.end());
-    for (std::uint32_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i) << "a permutation";
-
-    std::size_t begin = 0;
-    for (const std::uint32_t end : islands.colours) {
-        ASSERT_LT(begin, end);
+    ASSERT_EQ(step.islands.size(), 1u);
+    ASSERT_TRUE(step.islands.is_coloured(0));
+    const ColouredIslands& wide = step.wide;
+    std::vector<int> seen(step.contacts.size());
+    std::size_t batched_pairs = 0, left_over = 0;
+    for (std::size_t colour = 0; colour < wide.colours.size(); ++colour) {
+        const bool is_leftover = colour + 1 == wide.colours.size();
         std::vector<bool> used(kCount, false);
-        for (std::size_t i = begin; i < end; ++i) {
-            const Contact& contact = step.contacts[islands.contacts[i]];
-            for (const BodyId id : {contact.a, contact.b}) {
-                if (id == 0) continue;
-                ASSERT_FALSE(used[id]);
-                used[id] = true;
-            }
-            if (i > begin) {
-                ASSERT_LT(islands.contacts[i - 1], islands.contacts[i]) << "in their order";
-            }
-        }
-        begin = end;
+        const auto check = [&](const std::vector<Batch>& batches, BatchRange range, bool round) {
+            for (std::uint32_t i = range.begin; i < range.end; ++i)
+                for (std::size_t k = 0; k < kLanes && batches[i].points[k] > 0; ++k) {
+                    const Batch& batch = batches[i];
+                    const Contact& first = step.contacts[batch.contact[k]];
+                    ASSERT_LE(batch.points[k], batch.rows);
+                    for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
+                        const Contact& contact = step.contacts[batch.contact[k] + p];
+                        ASSERT_EQ(contact.a, first.a);
+                        ASSERT_EQ(contact.b, first.b);
+                        ++seen[batch.contact[k] + p];
+                    }
+                    ASSERT_EQ(round, first.a % 2 == 0 && first.b % 2 == 0);
+                    ASSERT_EQ(wide.bodies[batch.b[k]], first.b);
+                    ASSERT_EQ(batch.a[k] == 0, first.a == 0) << "only body 0 does not move";
+                    if (first.a > 0) {
+                        ASSERT_EQ(wide.bodies[batch.a[k]], first.a);
+                    }
+                    ++batched_pairs, left_over += is_leftover;
+                    for (const BodyId id : {first.a, first.b}) {
+                        if (id == 0 || is_leftover) continue;
+                        ASSERT_FALSE(used[id]);
+                        used[id] = true;
+                    }
+                }
+        };
+        check(wide.round, wide.colours[colour].round, true);
+        check(wide.general, wide.colours[colour].general, false);
     }
-    // 64 colours hold 64 of body 1's contacts, 700 in all; those of the others fit.
-    EXPECT_EQ(islands.colours.size(), 64u);
-    EXPECT_EQ(step.contacts.size() - begin, 699u - 64u);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ssize(seen)) << "each contact once";
+    EXPECT_EQ(batched_pairs, pairs);
+    // 64 colours hold 64 of body 1's pairs, 699 in all; those of the others fit.
+    EXPECT_EQ(wide.colours.size(), 65u);
+    EXPECT_EQ(left_over, 699u - 64u);
 }
 
 }  // namespace
