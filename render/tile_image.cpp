@@ -47,12 +47,12 @@ std::optional<Surface> TileRays::first_surface(const Vec2& film) {
     const Hit hit =
         nearest_hit(scene_.placed, candidates_, view, world, scene_.picture.settings, stats);
     if (!hit) return std::nullopt;
-    return scene_.shading.surface(hit, world);
+    return scene_.shading.surface(hit, Vec4::Zero(), world);
 }
 
 void TileRays::add(const std::optional<Surface>& surface, Filtered& sum) {
     if (!surface) {
-        sum.color += scene_.shading.sky();
+        sum.color += scene_.lights.sky;
         return;
     }
     sum.alpha += 1;
@@ -109,7 +109,8 @@ FrameScene::FrameScene(const Picture& p, bool color)
       camera(p.camera, p.settings.width, p.settings.height),
       placed(place_bodies(p, camera.origin())),
       slice(slice_bounds(placed, camera, p.settings.max_distance)),
-      shading(p, placed),
+      lights(p.lights, camera.origin()),
+      shading(p, placed, lights),
       wants_color(color) {}
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {

@@ -42,6 +42,7 @@ struct FrameScene {
     Camera camera;
     PlacedBodies placed;
     std::vector<SliceBounds> slice;
+    LightSet lights;
     Shading shading;
     bool wants_color;  ///< for the image or the preview
 
