@@ -1,7 +1,6 @@
 #include "render/shading.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace tesserae::render {
 namespace {
@@ -49,26 +48,27 @@ Surface Shading::surface(const Hit& hit, const Vec4& origin, const Vec4& directi
     return s;
 }
 
-Color Shading::radiance(const Surface& s, FrameStats& stats) const {
+Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) const {
+    const Bsdf bsdf(s, out);
     Color sum = s.material->emission + s.albedo * lights_.sky;
     for (const SunDisc& sun : lights_.suns)
-        sum += reflected(s, sun, s.normal.dot(sun.toward) * sun.irradiance, stats);
+        sum += reflected(s, bsdf, sun, s.normal.dot(sun.toward) * sun.irradiance, stats);
     for (const PointLight& point : lights_.points) {
         const LightAt light = LightSet::at(point, s.point, s.normal);
-        sum += reflected(s, light.disc, light.irradiance, stats);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
     }
     for (const SphereLight& sphere : lights_.spheres) {
         const LightAt light = LightSet::at(sphere, s.point, s.normal);
-        sum += reflected(s, light.disc, light.irradiance, stats);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
     }
     return sum;
 }
 
-Color Shading::reflected(const Surface& s, const LightDisc& light, const Color& irradiance,
-                         FrameStats& stats) const {
+Color Shading::reflected(const Surface& s, const Bsdf& bsdf, const LightDisc& light,
+                         const Color& irradiance, FrameStats& stats) const {
     if (!(irradiance > 0).any()) return Color::Zero();
     const double visible = shadows_->visibility(light, s.point, s.body, stats);
-    return visible * (3 / (4 * std::numbers::pi)) * s.albedo * irradiance;
+    return visible * bsdf.value(light.toward) * irradiance;
 }
 
 }  // namespace tesserae::render

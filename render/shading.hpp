@@ -5,19 +5,11 @@
 
 #include "render/intersect.hpp"
 #include "render/light/light_set.hpp"
+#include "render/material/bsdf.hpp"
 #include "render/shadow.hpp"
+#include "render/surface.hpp"
 
 namespace tesserae::render {
-
-/// What a ray found on a body.
-struct Surface {
-    double distance;     ///< along the ray [m]
-    std::uint32_t body;  ///< index into PlacedBodies::bodies
-    Vec4 point;          ///< relative to the camera, world axes [m]
-    Vec4 normal;         ///< unit, out of the body, world axes
-    Color albedo;
-    const Material* material;
-};
 
 /// Colour of a material at a point of the body's frame. Checker: cells of edge pattern_size, one of
 /// them centred on the origin, coloured by the parity of their four indices. Stripes: slabs of
@@ -40,13 +32,15 @@ class Shading {
     /// Radiance that leaves the surface toward the viewer: its emission, plus the sum over the
     /// lights of BRDF * irradiance * visibility, plus albedo times the sky's radiance. The BRDF of
     /// a 4D Lambert surface is 3 albedo/(4 pi), as the integral of cos over the hemisphere of S^3
-    /// is 4 pi/3.
-    Color radiance(const Surface& surface, FrameStats& stats) const;
+    /// is 4 pi/3; a rough surface's is taken toward the light's middle, and its share of the sky as
+    /// Lambert's.
+    /// @param out   toward the viewer, unit, world axes
+    Color radiance(const Surface& surface, const Vec4& out, FrameStats& stats) const;
 
   private:
     /// One light's share of the radiance.
-    Color reflected(const Surface& surface, const LightDisc& light, const Color& irradiance,
-                    FrameStats& stats) const;
+    Color reflected(const Surface& surface, const Bsdf& bsdf, const LightDisc& light,
+                    const Color& irradiance, FrameStats& stats) const;
 
     const Picture& picture_;
     const PlacedBodies& placed_;

@@ -31,7 +31,7 @@ Shaded shade(const TestScene& scene, const Vec4& direction) {
         if (t < hit.distance) hit = {t, b};
     }
     s.surface = shading.surface(hit, Vec4::Zero(), direction);
-    s.radiance = shading.radiance(s.surface, s.stats);
+    s.radiance = shading.radiance(s.surface, -direction, s.stats);
     return s;
 }
 
