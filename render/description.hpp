@@ -16,12 +16,19 @@ using Color = Eigen::Array3d;
 
 enum class Pattern { kNone, kChecker, kStripes };
 
+/// In the order of the scene format's names.
+enum class MaterialKind { kDiffuse, kMirror, kGlass, kRough };
+
 struct Material {
     std::string name;
+    MaterialKind kind = MaterialKind::kDiffuse;
     Color albedo = Color::Constant(0.8);  ///< each 0 to 1
     Pattern pattern = Pattern::kNone;
     Color pattern_albedo = Color::Constant(0.2);
-    double pattern_size = 0.5;  ///< edge of a cell, width of a stripe [m]
+    double pattern_size = 0.5;       ///< edge of a cell, width of a stripe [m]
+    double ior = 1.5;                ///< of glass against empty space, > 1
+    double roughness = 0.3;          ///< of rough, 0 to 1; 0 is a mirror
+    Color emission = Color::Zero();  ///< radiance toward every side, >= 0, of any kind
 };
 
 /// How the bodies of a type look.
@@ -40,8 +47,24 @@ struct Sun {
     double angle = 1;  ///< half-angle [degrees], 0 to 30; 0 is a hard shadow
 };
 
+/// Sends its flux equally to all sides: irradiance flux cos/(2 pi^2 r^3) at distance r.
+struct PointLight {
+    Vec4 position = Vec4::Zero();  ///< world [m]
+    Color flux = Color::Ones();
+};
+
+/// A ball of light: the same radiance from every point of its surface toward every side. It is seen
+/// by the camera and by all other rays, and is no body.
+struct SphereLight {
+    Vec4 position = Vec4::Zero();  ///< of the centre, world [m]
+    double radius = 1;             ///< [m], > 0
+    Color radiance = Color::Ones();
+};
+
 struct Lights {
     std::vector<Sun> suns;
+    std::vector<PointLight> points;
+    std::vector<SphereLight> spheres;
     Color sky = Color::Zero();  ///< radiance from everywhere, the sum of all skies
 };
 
@@ -61,6 +84,8 @@ struct CameraDescription {
     friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
 };
 
+/// kDirect: Lambert and soft shadows in closed form. kPath: global illumination by path tracing.
+enum class Integrator { kDirect, kPath };
 enum class Intersector { kTrace, kAnalytic };
 
 /// Half open, in pixels from the top left.
@@ -76,6 +101,8 @@ struct Settings {
     int width = 1280, height = 720;
     double frames_per_second = 30;
     int samples = 16;
+    Integrator integrator = Integrator::kDirect;
+    int bounces = 4;  ///< 0: emitted and direct light only
     Intersector intersector = Intersector::kTrace;
     int max_steps = 200;
     double max_distance = 200;  ///< along a view ray [m]

@@ -1,7 +1,6 @@
 #include "render/shading.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace tesserae::render {
 namespace {
@@ -28,21 +27,20 @@ Color albedo_at(const Material& m, const Vec4& point) {
     return is_odd(sum) ? m.pattern_albedo : m.albedo;
 }
 
-Shading::Shading(const Picture& picture, const PlacedBodies& placed)
-    : picture_(picture), placed_(placed) {
-    for (const Sun& sun : picture.lights.suns)
-        if ((sun.irradiance > 0).any()) suns_.push_back(sun_disc(sun));
-    if (!suns_.empty()) shadows_.emplace(placed);
+Shading::Shading(const Picture& picture, const PlacedBodies& placed, const LightSet& lights)
+    : picture_(picture), placed_(placed), lights_(lights) {
+    if (!lights.is_empty()) shadows_.emplace(placed);
 }
 
-Surface Shading::surface(const Hit& hit, const Vec4& direction) const {
+Surface Shading::surface(const Hit& hit, const Vec4& origin, const Vec4& direction) const {
     const PlacedBody& body = placed_.bodies[hit.body];
-    const Vec4 point = hit.distance * direction;
+    const Vec4 point = origin + hit.distance * direction;
     const Vec4 local = placed_.point_to_body(body, point);
     const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
     const std::uint32_t type = picture_.bodies.type[body.id];
     const Material& material = picture_.materials[picture_.appearance[type].material];
-    Surface s = {hit.distance, hit.body, point, placed_.direction_to_world(body, out), {}};
+    Surface s = {hit.distance, hit.body, point, placed_.direction_to_world(body, out),
+                 {},           &material};
     s.albedo = material.pattern == Pattern::kNone
                    ? material.albedo
                    : albedo_at(material, local - pattern_origin(*body.shape) -
@@ -50,15 +48,27 @@ Surface Shading::surface(const Hit& hit, const Vec4& direction) const {
     return s;
 }
 
-Color Shading::radiance(const Surface& s, FrameStats& stats) const {
-    Color light = sky();
-    for (const SunDisc& sun : suns_) {
-        const double cosine = s.normal.dot(sun.toward);
-        if (cosine <= 0) continue;
-        const double visible = shadows_->visibility(sun, s.point, s.body, stats);
-        light += (3 / (4 * std::numbers::pi)) * cosine * visible * sun.irradiance;
+Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) const {
+    const Bsdf bsdf(s, out);
+    Color sum = s.material->emission + s.albedo * lights_.sky;
+    for (const SunDisc& sun : lights_.suns)
+        sum += reflected(s, bsdf, sun, s.normal.dot(sun.toward) * sun.irradiance, stats);
+    for (const PointLight& point : lights_.points) {
+        const LightAt light = LightSet::at(point, s.point, s.normal);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
     }
-    return s.albedo * light;
+    for (const SphereLight& sphere : lights_.spheres) {
+        const LightAt light = LightSet::at(sphere, s.point, s.normal);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
+    }
+    return sum;
+}
+
+Color Shading::reflected(const Surface& s, const Bsdf& bsdf, const LightDisc& light,
+                         const Color& irradiance, FrameStats& stats) const {
+    if (!(irradiance > 0).any()) return Color::Zero();
+    const double visible = shadows_->visibility(light, s.point, s.body, stats);
+    return visible * bsdf.value(light.toward) * irradiance;
 }
 
 }  // namespace tesserae::render

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "render/light/cap.hpp"
+
 namespace tesserae::render {
 namespace {
 
@@ -36,8 +38,11 @@ double seen_from_within(double distance, double slope, double scale) {
 /// t cos(phi) is the closest point's distance: beyond `reach` there is nothing inside the cone.
 /// Every sample bounds the ratio from above, and the tangents at both ends of the interval from
 /// below; the next t is a secant step for f' t - f, with the Illinois rule against standing still.
+/// A limit below `reach` ends the ray there, where the ratio may still be falling.
 template <class Evaluate>
-double least_ratio(const Evaluate& f, double reach, const Cone& cone) {
+double least_ratio(const Evaluate& f, double reach, double limit, const Cone& cone) {
+    const bool is_cut = limit < reach;
+    if (is_cut) reach = limit;
     Sample low = f(0);
     if (low.value <= kTouching * reach) return seen_from_within(low.value, low.slope, reach);
     const auto clears_from = [&](const Sample& s) {
@@ -48,13 +53,14 @@ double least_ratio(const Evaluate& f, double reach, const Cone& cone) {
     // Step out until the ratio has stopped falling.
     Sample high = low;
     double upper = 1;
-    for (double t = std::clamp(-low.slope * low.value, low.value, reach);;
+    for (double t = std::min(reach, std::max(-low.slope * low.value, low.value));;
          t = std::min(reach, 2 * t)) {
         high = f(t);
         upper = std::min(upper, high.value / t);
         if (upper <= -cone.sine) return upper;
         if (high.excess() >= 0) break;
-        if (t >= reach || clears_from(high)) return 1;
+        if (clears_from(high)) return 1;
+        if (t >= reach) return is_cut ? upper : 1;
         low = high;
     }
 
@@ -90,23 +96,24 @@ double least_ratio(const Evaluate& f, double reach, const Cone& cone) {
 
 template <class S>
 double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, double radius,
-                   const Cone& cone, FrameStats& stats) {
+                   const Cone& cone, double limit, FrameStats& stats) {
     const auto f = [&](double t) {
         const Vec4 point = origin + t * direction;
         ++stats.distance_evaluations;
         return Sample{t, signed_distance(shape, point), normal(shape, point).dot(direction)};
     };
     if constexpr (S::kBounded) {
-        return least_ratio(f, (origin.norm() + radius) / cone.cosine * (1 + 1e-9), cone);
+        return least_ratio(f, (origin.norm() + radius) / cone.cosine * (1 + 1e-9), limit, cone);
     } else {
         // A half-space: f is linear, and f/t falls toward its slope.
         const Sample s = f(0);
-        return s.value <= 0 ? seen_from_within(s.value, s.slope, origin.norm()) : s.slope;
+        return s.value <= 0 ? seen_from_within(s.value, s.slope, origin.norm())
+                            : s.slope + s.value / limit;
     }
 }
 
 double rim_sine_of(const Hypersphere&, const Vec4& origin, const Vec4& direction, double radius,
-                   const Cone&, FrameStats&) {
+                   const Cone&, double limit, FrameStats&) {
     const double square = origin.squaredNorm();
     if (square <= radius * radius) {
         const double distance = std::sqrt(square);
@@ -116,7 +123,11 @@ double rim_sine_of(const Hypersphere&, const Vec4& origin, const Vec4& direction
     const double cos_theta = -origin.dot(direction);
     const double sin_theta = (origin + cos_theta * direction).norm();
     const double cos_alpha = std::sqrt(square - radius * radius);
-    if (cos_theta * cos_alpha + sin_theta * radius <= 0) return 1;
+    const double cos_between = cos_theta * cos_alpha + sin_theta * radius;
+    if (cos_between <= 0) return 1;
+    // The least ratio is met at t = cos_alpha / cos(theta - alpha).
+    if (limit * cos_between < cos_alpha * square)
+        return ((origin + limit * direction).norm() - radius) / limit;
     return (sin_theta * cos_alpha - cos_theta * radius) / square;
 }
 
@@ -124,16 +135,20 @@ double rim_sine_of(const Hypersphere&, const Vec4& origin, const Vec4& direction
 
 SunDisc sun_disc(const Sun& sun) {
     const double angle = sun.angle * (std::numbers::pi / 180);
-    return {-sun.direction, sun.irradiance, angle, {std::sin(angle), std::cos(angle)}};
+    SunDisc disc = {
+        {-sun.direction, angle, {std::sin(angle), std::cos(angle)}}, sun.irradiance, Color::Zero()};
+    if (angle > 0) disc.radiance = sun.irradiance / cap_irradiance(angle, std::numbers::pi / 2);
+    return disc;
 }
 
 double rim_sine(const PlacedBodies& placed, std::uint32_t index, const Vec4& origin,
-                const Vec4& direction, const Cone& cone, FrameStats& stats) {
+                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats) {
     const PlacedBody& body = placed.bodies[index];
     return std::visit(
         [&](const auto& shape) {
             return rim_sine_of(shape, placed.point_to_body(body, origin),
-                               placed.direction_to_body(body, direction), body.radius, cone, stats);
+                               placed.direction_to_body(body, direction), body.radius, cone, limit,
+                               stats);
         },
         *body.shape);
 }
@@ -150,41 +165,48 @@ Shadows::Shadows(const PlacedBodies& placed) : placed_(placed), tree_(placed.bod
             unbounded_.push_back(i);
 }
 
-bool Shadows::is_hidden(const SunDisc& sun, const Vec4& point, std::uint32_t on,
+bool Shadows::is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const {
+    const PlacedBody& b = placed_.bodies[body];
+    return (b.centre - point).norm() - b.radius > light.limit;
+}
+
+bool Shadows::is_hidden(const LightDisc& light, const Vec4& point, std::uint32_t on,
                         FrameStats& stats) const {
     bool hidden = false;
     const auto clears = [&](std::uint32_t body) {
-        hidden = body != on && rim_sine(placed_, body, point, sun.toward, sun.cone, stats) < 0;
+        hidden = body != on && !is_behind(light, point, body) &&
+                 rim_sine(placed_, body, point, light.toward, light.cone, light.limit, stats) < 0;
         return !hidden;
     };
     for (std::uint32_t body : unbounded_)
         if (!clears(body)) return true;
-    tree_.for_each_in_cone(point, sun.toward, sun.cone, clears);
+    tree_.for_each_in_cone(point, light.toward, light.cone, clears);
     return hidden;
 }
 
-double Shadows::visibility(const SunDisc& sun, const Vec4& point, std::uint32_t on,
+double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint32_t on,
                            FrameStats& stats) const {
     ++stats.shadow_rays;
-    if (sun.angle == 0) return is_hidden(sun, point, on, stats) ? 0 : 1;
+    if (light.angle == 0) return is_hidden(light, point, on, stats) ? 0 : 1;
 
     // The cone that can still matter narrows to the nearest rim found.
-    double least = sun.cone.sine;
-    Cone cone = sun.cone;
+    double least = light.cone.sine;
+    Cone cone = light.cone;
     const auto narrow = [&](std::uint32_t body) {
-        if (body == on) return true;
-        const double sine = rim_sine(placed_, body, point, sun.toward, sun.cone, stats);
+        if (body == on || is_behind(light, point, body)) return true;
+        const double sine =
+            rim_sine(placed_, body, point, light.toward, light.cone, light.limit, stats);
         if (sine < least) {
             least = sine;
             cone = {sine, std::sqrt(std::max(0.0, 1 - sine * sine))};
         }
-        return least > -sun.cone.sine;
+        return least > -light.cone.sine;
     };
     for (std::uint32_t body : unbounded_)
         if (!narrow(body)) return 0;
-    tree_.for_each_in_cone(point, sun.toward, cone, narrow);
-    if (least <= -sun.cone.sine) return 0;
-    return visible_part(std::asin(least) / sun.angle);
+    tree_.for_each_in_cone(point, light.toward, cone, narrow);
+    if (least <= -light.cone.sine) return 0;
+    return visible_part(std::asin(least) / light.angle);
 }
 
 }  // namespace tesserae::render

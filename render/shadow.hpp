@@ -9,12 +9,18 @@
 
 namespace tesserae::render {
 
+/// What a point sees of a light: a disc of directions, and how far away it is.
+struct LightDisc {
+    Vec4 toward;           ///< unit
+    double angle;          ///< half-angle [rad], below pi/2; 0 casts hard shadows
+    Cone cone;             ///< of that half-angle
+    double limit = kMiss;  ///< what is farther than this is behind the light [m]
+};
+
 /// A sun made ready: `toward` is where it stands.
-struct SunDisc {
-    Vec4 toward;       ///< unit
+struct SunDisc : LightDisc {
     Color irradiance;  ///< on a facing surface
-    double angle;      ///< half-angle [rad]; 0 casts hard shadows
-    Cone cone;         ///< of that half-angle
+    Color radiance;    ///< of the disc: irradiance/((4 pi/3) sin^3 angle); 0 for a hard sun
 };
 SunDisc sun_disc(const Sun& sun);
 
@@ -25,17 +31,21 @@ SunDisc sun_disc(const Sun& sun);
 /// sin(theta - alpha) on both sides; FORMULAS 7).
 /// @param cone   which values matter: the result has the right value within +-cone.sine (to 1e-6 of
 ///               it), and beyond only the right side of it. With angle 0 only the sign matters
+/// @param limit  only what comes before this distance along the ray counts [m]: the least f(t)/t
+///               over 0 < t <= limit
 double rim_sine(const PlacedBodies& placed, std::uint32_t body, const Vec4& origin,
-                const Vec4& direction, const Cone& cone, FrameStats& stats);
+                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats);
 
-/// The part of a sun's disc that lies beyond a flat rim at angle x * half-angle from its middle,
+/// The part of a light's disc that lies beyond a flat rim at angle x * half-angle from its middle,
 /// x in [-1, 1] (0 hidden, 1 clear). The disc is a 3-ball of directions, and a plane cuts
 /// (2 + 3x - x^3)/4 of a ball off, which is smoothstep((1 + x)/2).
 double visible_part(double x);
 
-/// How much of a sun reaches a point: 0 to 1. The rim of the body that covers most of the sun
+/// How much of a light reaches a point: 0 to 1. The rim of the body that covers most of the disc
 /// decides, as in a distance field of the whole scene; the rim counts as flat, and a small disc of
-/// directions as a Euclidean ball. A hard sun is hidden or not.
+/// directions as a Euclidean ball. A hard light is hidden or not. A body counts as far as it comes
+/// before the light's limit along the ray to the disc's middle: what stands beside a sphere light,
+/// between its near side and its rim, is decided by that.
 class Shadows {
   public:
     /// @param placed   must outlive it
@@ -45,14 +55,16 @@ class Shadows {
     /// body
     ///                never shades its own lit side, so that body is left out and no ray needs to
     ///                be moved off its surface.
-    double visibility(const SunDisc& sun, const Vec4& point, std::uint32_t on,
+    double visibility(const LightDisc& light, const Vec4& point, std::uint32_t on,
                       FrameStats& stats) const;
 
   private:
-    bool is_hidden(const SunDisc& sun, const Vec4& point, std::uint32_t on,
+    bool is_hidden(const LightDisc& light, const Vec4& point, std::uint32_t on,
                    FrameStats& stats) const;
 
     const PlacedBodies& placed_;
+    bool is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const;
+
     ShadowTree tree_;
     std::vector<std::uint32_t> unbounded_;
 };

@@ -33,31 +33,40 @@ class TileRays {
     FrameStats stats;
 
   private:
-    std::optional<Surface> first_surface(const Vec2& film);
-    void add(const std::optional<Surface>& surface, Filtered& sum);
+    /// A view ray and the body that it meets, if any.
+    struct View {
+        Vec4 direction;
+        std::optional<Surface> surface;
+    };
+    View first_surface(const Vec2& film);
+    void add(const View& view, const SampleNumber& sample, Filtered& sum);
 
     const FrameScene& scene_;
     std::vector<Candidate> candidates_;
 };
 
-std::optional<Surface> TileRays::first_surface(const Vec2& film) {
+TileRays::View TileRays::first_surface(const Vec2& film) {
     ++stats.view_rays;
     const Vec3 view = scene_.camera.ray_direction(film);
     const Vec4 world = scene_.camera.to_world({view.x(), view.y(), view.z(), 0});
     const Hit hit =
         nearest_hit(scene_.placed, candidates_, view, world, scene_.picture.settings, stats);
-    if (!hit) return std::nullopt;
-    return scene_.shading.surface(hit, world);
+    if (!hit) return {world, std::nullopt};
+    return {world, scene_.shading.surface(hit, Vec4::Zero(), world)};
 }
 
-void TileRays::add(const std::optional<Surface>& surface, Filtered& sum) {
-    if (!surface) {
-        sum.color += scene_.shading.sky();
-        return;
+void TileRays::add(const View& view, const SampleNumber& sample, Filtered& sum) {
+    if (view.surface) {
+        sum.alpha += 1;
+        sum.albedo += view.surface->albedo;
     }
-    sum.alpha += 1;
-    sum.albedo += surface->albedo;
-    if (scene_.wants_color) sum.color += scene_.shading.radiance(*surface, stats);
+    if (!scene_.wants_color) return;
+    const Sampler sampler(sample.x, sample.y, sample.sample);
+    const Color color = scene_.transport.radiance(view.surface, view.direction, sampler, stats);
+    if (color.isFinite().all())
+        sum.color += color;
+    else
+        stats.count_invalid(sample, 1);
 }
 
 void store(const std::optional<Surface>& surface, const FrameScene& scene, Pixel& pixel) {
@@ -83,15 +92,15 @@ Pixel TileRays::pixel(int x, int y) {
     Filtered sum;
     const bool one = settings.samples == 1;
     if (one || c.depth || c.normal || c.position || c.id) {
-        const auto surface = first_surface({x + 0.5, y + 0.5});
-        store(surface, scene_, pixel);
-        if (one) add(surface, sum);
+        const View view = first_surface({x + 0.5, y + 0.5});
+        store(view.surface, scene_, pixel);
+        if (one) add(view, {y, x, 0}, sum);
     } else {
         store(std::nullopt, scene_, pixel);
     }
     if (!one && filtered)
-        for (int i = 0; i < settings.samples; ++i)
-            add(first_surface(Vec2(x, y) + pixel_sample(x, y, static_cast<std::uint32_t>(i))), sum);
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(settings.samples); ++i)
+            add(first_surface(Vec2(x, y) + pixel_sample(x, y, i)), {y, x, i}, sum);
 
     const double weight = 1.0 / settings.samples;
     for (int i = 0; i < 3; ++i) {
@@ -109,7 +118,9 @@ FrameScene::FrameScene(const Picture& p, bool color)
       camera(p.camera, p.settings.width, p.settings.height),
       placed(place_bodies(p, camera.origin())),
       slice(slice_bounds(placed, camera, p.settings.max_distance)),
-      shading(p, placed),
+      lights(p.lights, camera.origin()),
+      shading(p, placed, lights),
+      transport(p, placed, lights, shading),
       wants_color(color) {}
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {

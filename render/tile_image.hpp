@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/shading.hpp"
+#include "render/path.hpp"
 #include "render/tiles.hpp"
 
 namespace tesserae::render {
@@ -42,7 +42,9 @@ struct FrameScene {
     Camera camera;
     PlacedBodies placed;
     std::vector<SliceBounds> slice;
+    LightSet lights;
     Shading shading;
+    LightTransport transport;
     bool wants_color;  ///< for the image or the preview
 
     FrameScene(const Picture& picture, bool wants_color);

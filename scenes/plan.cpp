@@ -86,6 +86,51 @@ void decide_physics(const Scene& scene, Plan& plan) {
     if (plan.moves) decide_solver(*scene.physics, plan);
 }
 
+std::string light_counts(const render::Lights& lights) {
+    std::string text;
+    const auto add = [&](std::size_t count, const char* name) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+    };
+    add(lights.suns.size(), "sun(s)");
+    add(lights.points.size(), "point light(s)");
+    add(lights.spheres.size(), "sphere light(s)");
+    return text;
+}
+
+/// @param visible   how many bodies are
+void decide_light(const Scene& scene, std::uint64_t visible, Plan& plan) {
+    const render::Lights& lights = scene.lights;
+    const bool is_path = scene.render.integrator == render::Integrator::kPath;
+    const std::string counts = light_counts(lights);
+    plan.decisions.push_back(
+        {"shadow rays", !counts.empty() && visible > 1,
+         counts.empty()
+             ? (is_path ? "no light but the sky, which bounced rays find"
+                        : "no light but the sky, which is taken unoccluded")
+             : (visible > 1 ? counts : "nothing is there to cast a shadow on another body")});
+    plan.decisions.push_back(
+        {"global illumination", is_path,
+         is_path ? fmt::format("integrator = \"path\": emitted and direct light and {} bounce(s)",
+                               scene.render.bounces)
+                 : "integrator = \"direct\""});
+    if (is_path) return;
+
+    // Diffuse and rough surfaces end a ray of the direct picture.
+    const auto reflects = count_if_type(scene.bodies, [&](auto t) {
+        const render::Appearance& a = scene.appearance[t];
+        const render::MaterialKind kind = scene.materials[a.material].kind;
+        return a.visible &&
+               (kind == render::MaterialKind::kMirror || kind == render::MaterialKind::kGlass);
+    });
+    const bool follows = reflects > 0 && scene.render.bounces > 0;
+    plan.decisions.push_back(
+        {"reflected and refracted rays", follows,
+         follows ? fmt::format("{} bodies of mirror or glass, {} bounce(s)", reflects,
+                               scene.render.bounces)
+                 : (reflects > 0 ? "bounces = 0: mirrors and glass show lights and sky only"
+                                 : "nothing is a mirror or glass")});
+}
+
 void decide_picture(const Scene& scene, Plan& plan) {
     const Bodies& bodies = scene.bodies;
     const auto visible = count_if_type(bodies, [&](auto t) { return scene.appearance[t].visible; });
@@ -93,12 +138,7 @@ void decide_picture(const Scene& scene, Plan& plan) {
         plan.decisions.push_back(
             {"invisible bodies in the picture", false,
              fmt::format("{} bodies have visible = false", plan.bodies - visible)});
-    const bool suns = !scene.lights.suns.empty();
-    plan.decisions.push_back(
-        {"shadow rays", suns && visible > 1,
-         !suns ? "no sun: the sky is taken unoccluded"
-               : (visible > 1 ? fmt::format("{} sun(s)", scene.lights.suns.size())
-                              : "nothing is there to cast a shadow on another body")});
+    decide_light(scene, visible, plan);
     const render::Channels& c = scene.render.channels;
     const auto channel = [&](bool wanted, const char* name) {
         if (!wanted)

@@ -73,4 +73,15 @@ double ray_hit(const Hyperbox& shape, const Vec4& origin, const Vec4& direction)
     return enter <= leave ? enter : kMiss;
 }
 
+/// The first of the faces ahead.
+double ray_exit(const Hyperbox& shape, const Vec4& origin, const Vec4& direction) {
+    double leave = kMiss;
+    for (int i = 0; i < 4; ++i) {
+        if (direction[i] == 0) continue;
+        const double side = sign_of(direction[i]) * 0.5 * shape.size[i];
+        leave = std::min(leave, (side - origin[i]) / direction[i]);
+    }
+    return std::max(0.0, leave);
+}
+
 }  // namespace tesserae

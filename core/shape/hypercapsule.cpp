@@ -93,4 +93,20 @@ double ray_hit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direct
     return std::min(ray_hit(ball, origin - end, direction), ray_hit(ball, origin + end, direction));
 }
 
+/// The ray leaves through the wall if that is beside the core, else through the cap on whose side
+/// it leaves the unending wall: leaving by the other cap it would have to enter the capsule again.
+double ray_exit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction) {
+    const Hypersphere ball{shape.radius};
+    const double half = 0.5 * shape.height;
+    double height = direction[1] * kMiss;
+    const double sine = stable_norm(across(direction));
+    if (sine > 0) {
+        const double wall = ray_exit(ball, across(origin), across(direction) / sine) / sine;
+        height = origin[1] + wall * direction[1];
+        if (std::abs(height) <= half) return wall;
+    }
+    const Vec4 end = (height > 0 ? half : -half) * Vec4::UnitY();
+    return ray_exit(ball, origin - end, direction);
+}
+
 }  // namespace tesserae

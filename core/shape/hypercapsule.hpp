@@ -30,5 +30,6 @@ Vec4 support(const Hypercapsule& shape, const Vec4& direction);
 double signed_distance(const Hypercapsule& shape, const Vec4& point);
 Vec4 normal(const Hypercapsule& shape, const Vec4& point);
 double ray_hit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction);
+double ray_exit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction);
 
 }  // namespace tesserae

@@ -1,5 +1,7 @@
 #include "core/shape/hyperplane.hpp"
 
+#include <algorithm>
+
 namespace tesserae {
 
 /// Any finite nonzero normal, however long or short.
@@ -35,6 +37,12 @@ double ray_hit(const Hyperplane& shape, const Vec4& origin, const Vec4& directio
     if (distance <= 0) return 0;
     const double approach = -shape.normal.dot(direction);
     return approach > 0 ? distance / approach : kMiss;
+}
+
+double ray_exit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction) {
+    const double away = shape.normal.dot(direction);
+    if (!(away > 0)) return kMiss;
+    return std::max(0.0, -signed_distance(shape, origin) / away);
 }
 
 }  // namespace tesserae

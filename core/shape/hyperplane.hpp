@@ -32,5 +32,6 @@ Vec4 support(const Hyperplane& shape, const Vec4& direction);
 double signed_distance(const Hyperplane& shape, const Vec4& point);
 Vec4 normal(const Hyperplane& shape, const Vec4& point);
 double ray_hit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);
+double ray_exit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);
 
 }  // namespace tesserae

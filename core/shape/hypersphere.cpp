@@ -1,5 +1,6 @@
 #include "core/shape/hypersphere.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tesserae {
@@ -55,6 +56,17 @@ double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& directi
     // Come back by half the chord.
     const double half_chord = r * std::sqrt((1 - sine) * (1 + sine));
     return (distance - r) * ((distance + r) / (nearest + half_chord));
+}
+
+/// The farther root: forward of the middle of the chord as a sum, behind it as a quotient.
+double ray_exit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction) {
+    const double r = shape.radius;
+    const double nearest = -origin.dot(direction);
+    const double sine = std::min(1.0, stable_norm(origin + nearest * direction) / r);
+    const double half_chord = r * std::sqrt((1 - sine) * (1 + sine));
+    if (nearest >= 0) return nearest + half_chord;
+    const double distance = stable_norm(origin);
+    return std::max(0.0, (r - distance) * ((r + distance) / (half_chord - nearest)));
 }
 
 }  // namespace tesserae

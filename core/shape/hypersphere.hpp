@@ -28,5 +28,6 @@ Vec4 support(const Hypersphere& shape, const Vec4& direction);
 double signed_distance(const Hypersphere& shape, const Vec4& point);
 Vec4 normal(const Hypersphere& shape, const Vec4& point);
 double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
+double ray_exit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
 
 }  // namespace tesserae

@@ -18,32 +18,28 @@ render::Material load_material(TableReader& reader, EffectiveWriter& out) {
         m.name.empty())
         reader.fail("name", "expected a name that is not empty");
     std::size_t kind = 0, pattern = 0;
-    if (reader.read("kind", kind, kKinds)) require_built(reader, "kind", kind == 0);
+    reader.read("kind", kind, kKinds);
+    m.kind = static_cast<render::MaterialKind>(kind);
     reader.read("albedo", m.albedo, kUnit);
     reader.read("pattern", pattern, kPatterns);
     m.pattern = static_cast<render::Pattern>(pattern);
     reader.read("pattern_albedo", m.pattern_albedo, kUnit);
     reader.read("pattern_size", m.pattern_size, Rule::kPositive);
-    double ior = 1.5, roughness = 0.3;
-    render::Color emission = render::Color::Zero();
-    if (reader.read("ior", ior, Interval{1, kLargest, true}))
-        require_built(reader, "ior", ior == 1.5);
-    if (reader.read("roughness", roughness, kUnit))
-        require_built(reader, "roughness", roughness == 0.3);
-    if (reader.read("emission", emission, kNotNegative))
-        require_built(reader, "emission", (emission == 0).all());
+    reader.read("ior", m.ior, Interval{1, kLargest, true});
+    reader.read("roughness", m.roughness, kUnit);
+    reader.read("emission", m.emission, kNotNegative);
     reader.finish();
 
     out.table("[[material]]");
     out.key("name", m.name);
-    out.key("kind", kKinds[0]);
+    out.key("kind", kKinds[kind]);
     out.key("albedo", m.albedo);
     out.key("pattern", kPatterns[pattern]);
     out.key("pattern_albedo", m.pattern_albedo);
     out.key("pattern_size", m.pattern_size);
-    out.key("ior", ior);
-    out.key("roughness", roughness);
-    out.key("emission", emission);
+    out.key("ior", m.ior);
+    out.key("roughness", m.roughness);
+    out.key("emission", m.emission);
     return m;
 }
 
@@ -94,15 +90,21 @@ void load_light(TableReader& reader, Scene& scene, EffectiveWriter& out) {
     } else if (type == kSky) {
         scene.lights.sky += color * strength;
     } else {
-        Vec4 position;
-        double radius = 0;
+        Vec4 position = Vec4::Zero();
+        double radius = 1;
         if (reader.require("position", "expected four numbers"))
             reader.read("position", position, Rule::kFinite);
-        if (type == kSphere && reader.require("radius", "expected a number > 0"))
-            reader.read("radius", radius, Rule::kPositive);
+        out.key("position", position);
+        if (type == kPoint) {
+            scene.lights.points.push_back({position, color * strength});
+        } else {
+            if (reader.require("radius", "expected a number > 0"))
+                reader.read("radius", radius, Rule::kPositive);
+            out.key("radius", radius);
+            scene.lights.spheres.push_back({position, radius, color * strength});
+        }
     }
     reader.finish();
-    if (type == kPoint || type == kSphere) require_built(reader, "type", false);
     out.key("color", color);
     out.key("strength", strength);
 }

@@ -11,6 +11,7 @@ constexpr int kMaxSize = 65536;
 constexpr int kMaxSamples = 1 << 20;
 /// A sphere trace of a million steps is stuck.
 constexpr int kMaxSteps = 1'000'000;
+constexpr int kMaxBounces = 1'000'000;
 
 constexpr std::string_view kIntegrators[] = {"direct", "path"};
 constexpr std::string_view kIntersectors[] = {"trace", "analytic"};
@@ -46,12 +47,7 @@ std::string channels_text(const render::Channels& channels) {
 
 /// Features to come: checked like the others, and only their defaults pass.
 void read_unbuilt(TableReader& reader, int samples) {
-    std::size_t integrator = 0;
-    if (reader.read("integrator", integrator, kIntegrators))
-        require_built(reader, "integrator", integrator == 0);
-    int bounces = 4, max_samples = samples;
-    if (reader.read("bounces", bounces, 0, 1'000'000))
-        require_built(reader, "bounces", bounces == 4);
+    int max_samples = samples;
     std::string filter = "box";
     if (reader.read("filter", filter)) require_built(reader, "filter", filter == "box");
     double filter_width = 1, noise_target = 0;
@@ -83,8 +79,8 @@ void write_render(const render::Settings& s, EffectiveWriter& out) {
     out.line("size", fmt::format("[{}, {}]", s.width, s.height));
     out.key("frames_per_second", s.frames_per_second);
     out.key("samples", std::int64_t{s.samples});
-    out.key("integrator", kIntegrators[0]);
-    out.key("bounces", std::int64_t{4});
+    out.key("integrator", kIntegrators[static_cast<std::size_t>(s.integrator)]);
+    out.key("bounces", std::int64_t{s.bounces});
     out.key("intersector", kIntersectors[static_cast<std::size_t>(s.intersector)]);
     out.key("max_steps", std::int64_t{s.max_steps});
     out.key("max_distance", s.max_distance);
@@ -113,7 +109,10 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         s.height = static_cast<int>(size[1]);
         reader.read("frames_per_second", s.frames_per_second, Rule::kPositive);
         reader.read("samples", s.samples, 1, kMaxSamples);
-        std::size_t intersector = 0;
+        std::size_t integrator = 0, intersector = 0;
+        reader.read("integrator", integrator, kIntegrators);
+        s.integrator = static_cast<render::Integrator>(integrator);
+        reader.read("bounces", s.bounces, 0, kMaxBounces);
         reader.read("intersector", intersector, kIntersectors);
         s.intersector = static_cast<render::Intersector>(intersector);
         reader.read("max_steps", s.max_steps, 1, kMaxSteps);

@@ -70,7 +70,7 @@ void add_picture(CLI::App& app, CommandLine& line, Typed& typed) {
     app.add_option("--size", typed.size, "WIDTHxHEIGHT, instead of the scene's");
     app.add_option("--samples", typed.samples, "a pixel, instead of the scene's");
     app.add_option("--crop", typed.crop, "x0,y0,x1,y1: pixels from the top left, half open");
-    app.add_option("--integrator", typed.integrator, "direct (path: not yet)");
+    app.add_option("--integrator", typed.integrator, "direct or path");
     app.add_option("--intersector", typed.intersector, "trace or analytic");
 }
 

@@ -52,6 +52,8 @@ Json to_json(const FilmReport& r) {
             {"kept", r.kept},
             {"view_rays", r.stats.view_rays},
             {"shadow_rays", r.stats.shadow_rays},
+            {"bounce_rays", r.stats.bounce_rays},
+            {"invalid_samples", r.stats.invalid_samples},
             {"distance_evaluations", r.stats.distance_evaluations},
             {"seconds", r.seconds}};
 }

@@ -21,7 +21,8 @@ struct Shaded {
 Shaded shade(const TestScene& scene, const Vec4& direction) {
     const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
     const Picture picture = scene.picture();
-    const Shading shading(picture, placed);
+    const LightSet lights(picture.lights, Vec4::Zero());
+    const Shading shading(picture, placed, lights);
     Shaded s;
     Hit hit;
     for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
@@ -29,8 +30,8 @@ Shaded shade(const TestScene& scene, const Vec4& direction) {
             hit_distance(placed, b, Vec4::Zero(), direction, kMiss, scene.settings, s.stats);
         if (t < hit.distance) hit = {t, b};
     }
-    s.surface = shading.surface(hit, direction);
-    s.radiance = shading.radiance(s.surface, s.stats);
+    s.surface = shading.surface(hit, Vec4::Zero(), direction);
+    s.radiance = shading.radiance(s.surface, -direction, s.stats);
     return s;
 }
 
@@ -88,6 +89,72 @@ TEST(Shading, SunWithoutLightCastsNoRays) {
     dark.irradiance = Color::Zero();
     scene.lights.suns = {dark};
     EXPECT_EQ(shade(scene, -Vec4::UnitY()).stats.shadow_rays, 0u);
+}
+
+TEST(Shading, PointLightFallsOffAsTheCubeOfTheDistance) {
+    TestScene scene;
+    scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+    for (double height : {0.5, 1.0, 2.0, 4.0})
+        for (double aside : {0.0, 0.7}) {
+            // The flux through a hypersphere of radius r is spread over its area 2 pi^2 r^3.
+            scene.lights.points = {
+                {Vec4(0.6, 0, 0, 0.8) * aside + (height - 1) * Vec4::UnitY(), Color(1, 2, 3)}};
+            const double r = std::hypot(height, aside);
+            const double expected =
+                0.8 * kBrdf * (height / r) / (2 * std::numbers::pi * std::numbers::pi * r * r * r);
+            const Shaded s = shade(scene, -Vec4::UnitY());
+            EXPECT_NEAR(s.radiance[0], expected, 1e-14 * expected);
+            EXPECT_NEAR(s.radiance[2], 3 * expected, 3e-14 * expected);
+        }
+}
+
+TEST(Shading, SphereLightIsTheSineCubed) {
+    TestScene scene;
+    scene.materials[0].albedo = Color::Ones();
+    scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+    for (double height : {1.1, 2.0, 9.0}) {
+        const Vec4 aside = Vec4(0, 0, 0.6, 0.8) * 0.05 * height;
+        scene.lights.spheres = {{aside + (height - 1) * Vec4::UnitY(), 1, Color::Constant(5)}};
+        const double distance = std::hypot(height, aside.norm());
+        const double irradiance =
+            5 * 4 * std::numbers::pi / 3 * std::pow(1 / distance, 3) * height / distance;
+        EXPECT_NEAR(shade(scene, -Vec4::UnitY()).radiance[0] / (kBrdf * irradiance), 1, 1e-13);
+    }
+    // Inside the light everything is light: a white surface sends its radiance back.
+    scene.lights.spheres = {{Vec4::Zero(), 2, Color::Constant(5)}};
+    EXPECT_NEAR(shade(scene, -Vec4::UnitY()).radiance[0], 5, 1e-14);
+}
+
+TEST(Shading, BodiesShadeALightOnlyFromBetween) {
+    // A ball on the way to the light, beside it, and behind it.
+    for (int kind = 0; kind < 2; ++kind)
+        for (double radius : {0.3, 0.05}) {
+            const auto lit = [&](const Vec4& ball) {
+                TestScene scene;
+                scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+                scene.add(Hypersphere{radius}, ball);
+                if (kind == 0)
+                    scene.lights.points = {{Vec4(0, 3, 0, 0), Color::Ones()}};
+                else
+                    scene.lights.spheres = {{Vec4(0, 3, 0, 0), 0.02, Color::Ones()}};
+                return shade(scene, Vec4(1e-9, -1, 0, 0).normalized()).radiance[0];
+            };
+            const double clear = lit(Vec4(9, 9, 9, 9));
+            EXPECT_GT(clear, 0);
+            EXPECT_EQ(lit(Vec4(0, 0.8, 0, 0)), 0);
+            EXPECT_EQ(lit(Vec4(0, 2.6, 0, 0)), 0);
+            EXPECT_EQ(lit(Vec4(0, 3.4, 0, 0)), clear);
+            EXPECT_EQ(lit(Vec4(0, 300, 0, 0)), clear);
+            EXPECT_EQ(lit(Vec4(0, 0.8, 0, 0.5)), clear);
+        }
+}
+
+TEST(Shading, EmissionIsAdded) {
+    TestScene scene;
+    scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+    scene.materials[0].emission = {1, 2, 3};
+    scene.lights.sky = Color::Constant(0.5);
+    EXPECT_TRUE((shade(scene, -Vec4::UnitY()).radiance == Color(1.4, 2.4, 3.4)).all());
 }
 
 TEST(Shading, NormalsOfTurnedBodiesAreTheGradient) {

@@ -44,7 +44,7 @@ TEST(RimSine, OfABallIsTheAngleToItsRim) {
         scene.add(Hypersphere{radius}, centre);
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
         // acos loses half of long double's digits at worst: 1e-9.
-        EXPECT_NEAR(rim_sine(placed, 0, Vec4::Zero(), d, {0.5, std::sqrt(0.75)}, stats),
+        EXPECT_NEAR(rim_sine(placed, 0, Vec4::Zero(), d, {0.5, std::sqrt(0.75)}, kMiss, stats),
                     ball_rim(centre, radius, d), 1e-8);
     }
     EXPECT_EQ(stats.distance_evaluations, 0u);
@@ -69,7 +69,7 @@ TEST(RimSine, SearchAgreesWithTheBall) {
         scene.add(Hypercapsule{radius, 0}, centre, random_rotor(random));
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
         const double expected = ball_rim(centre, radius, d);
-        const double found = rim_sine(placed, 0, Vec4::Zero(), d, cone, stats);
+        const double found = rim_sine(placed, 0, Vec4::Zero(), d, cone, kMiss, stats);
         if (std::abs(expected) < cone.sine) {
             ++inside_cone;
             // 1e-6 of the cone's sine is promised; the oracle's acos adds 1e-9.
@@ -113,7 +113,7 @@ TEST(RimSine, IsTheLeastRatioOfDistanceAlongTheRay) {
             (ratio(u) < ratio(v) ? b : a) = ratio(u) < ratio(v) ? v : u;
         }
         const double expected = std::min(ratio(a), ratio(best));
-        const double found = rim_sine(placed, 0, Vec4::Zero(), d, cone, stats);
+        const double found = rim_sine(placed, 0, Vec4::Zero(), d, cone, kMiss, stats);
         if (std::abs(expected) < cone.sine) {
             ++inside_cone;
             EXPECT_NEAR(found, expected, 1.01e-6 * cone.sine + 1e-9) << i;
@@ -134,9 +134,11 @@ TEST(RimSine, InsideAndBehind) {
         TestScene scene;
         scene.add(random_shape(random, kind, 1), Vec4::Zero());
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
-        EXPECT_EQ(rim_sine(placed, 0, Vec4::Zero(), Vec4::UnitX(), cone, stats), -1);
-        EXPECT_GE(rim_sine(placed, 0, 9 * Vec4::UnitX(), Vec4::UnitX(), cone, stats), cone.sine);
-        EXPECT_LE(rim_sine(placed, 0, 9 * Vec4::UnitX(), -Vec4::UnitX(), cone, stats), -cone.sine);
+        EXPECT_EQ(rim_sine(placed, 0, Vec4::Zero(), Vec4::UnitX(), cone, kMiss, stats), -1);
+        EXPECT_GE(rim_sine(placed, 0, 9 * Vec4::UnitX(), Vec4::UnitX(), cone, kMiss, stats),
+                  cone.sine);
+        EXPECT_LE(rim_sine(placed, 0, 9 * Vec4::UnitX(), -Vec4::UnitX(), cone, kMiss, stats),
+                  -cone.sine);
     }
 }
 
@@ -249,6 +251,50 @@ TEST(SunVisibility, OfASmallSphereIsItsRimsFormula) {
     EXPECT_NEAR(visible, visible_part(-std::asin(0.01) / (2 * kDegree)), 1e-12);
 }
 
+TEST(RimSine, OfALimitedRayIsTheLeastRatioBeforeTheLimit) {
+    // Against f(t)/t at 20000 points of the ray. Where the ratio falls with slope up to 1/t at the
+    // limit, the last points are half a step from it; a cone of nearly 90 degrees makes every value
+    // matter.
+    Random random(40);
+    int cut = 0;
+    const Cone cone = {std::sin(1.5), std::cos(1.5)};
+    for (int i = 0; i < 300; ++i) {
+        TestScene scene;
+        if (i % 4 == 3)
+            scene.add(Hyperplane{random_direction(random), -1}, Vec4::Zero());
+        else
+            scene.add(random_shape(random, i % 4, 1), 4 * random_direction(random),
+                      random_rotor(random));
+        const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
+        const Vec4 toward =
+            (placed.bodies[0].centre + random_vector(random, 2) + 1e-3 * Vec4::UnitX())
+                .normalized();
+        const double limit = uniform(random, 0.5, 6);
+        FrameStats stats;
+        const double found = rim_sine(placed, 0, Vec4::Zero(), toward, cone, limit, stats);
+        const auto ratio = [&](double t) {
+            return std::visit(
+                       [&](const auto& s) {
+                           return signed_distance(
+                               s, placed.point_to_body(placed.bodies[0], t * toward));
+                       },
+                       *placed.bodies[0].shape) /
+                   t;
+        };
+        double least = 1;
+        constexpr int kPoints = 20000;
+        for (int k = 1; k <= kPoints; ++k) least = std::min(least, ratio(limit * k / kPoints));
+        if (least >= cone.sine)
+            EXPECT_GE(found, cone.sine) << i;
+        else if (least <= -cone.sine)
+            EXPECT_LE(found, -cone.sine) << i;
+        else
+            EXPECT_NEAR(found, least, 1e-4) << i;
+        cut += ratio(limit) == least && least < cone.sine;
+    }
+    EXPECT_GT(cut, 50);
+}
+
 TEST(Shadows, TreeLosesNoBody) {
     // Against the least rim over all bodies, one by one: the same bits, since a body that is left
     // out cannot have a smaller one.
@@ -272,8 +318,8 @@ TEST(Shadows, TreeLosesNoBody) {
             double least = 1;
             for (std::uint32_t b = 0; b < placed.bodies.size(); ++b)
                 if (b != on)
-                    least =
-                        std::min(least, rim_sine(placed, b, point, sun.toward, sun.cone, stats));
+                    least = std::min(
+                        least, rim_sine(placed, b, point, sun.toward, sun.cone, kMiss, stats));
             const double expected =
                 angle == 0 ? (least > 0) : visible_part(std::asin(least) / sun.angle);
             // asin of the cone's own sine may round to just inside the cone.

@@ -92,6 +92,45 @@ TYPED_TEST(ShapeRay, MissesOnlyWhatItMisses) {
     EXPECT_GT(misses, 200);
 }
 
+/// From points inside and on the surface: inside up to the exit, which lies on the surface, and
+/// outside from there on. Convexity leaves nothing else.
+TYPED_TEST(ShapeRay, ExitsAtTheZeroSetAndNotBefore) {
+    RandomGeometry random(434);
+    int inward = 0;
+    for (const auto& shape : sample_shapes<TypeParam>(random, 50)) {
+        const Oracle oracle(shape);
+        for (int i = 0; i < 60; ++i) {
+            Vec4 d = random.direction();
+            if (i % 3 == 0) d[random.engine() % 4] = 0;
+            if (i % 7 == 0) d = Vec4::Unit(random.engine() % 4) * (i % 2 ? 1 : -1);
+            d.normalize();
+            // A point of the surface: where some ray hits. The next one goes in or out from there.
+            const Vec4 aim = random.direction();
+            const Vec4 far = -3 * oracle.size * aim;
+            const double hit = ray_hit(shape, far, aim);
+            if (hit == kMiss) continue;
+            Vec4 o = far + hit * aim;
+            if (i % 2 == 0) o *= random.log_uniform(1e-3, 1);
+            const double error = 2 * kRayAccuracy * (stable_norm(far) + oracle.size);
+            const double t = ray_exit(shape, o, d);
+            ASSERT_GE(t, 0);
+            ASSERT_LE(t, 2 * oracle.size * (1 + 1e-12) + error);
+            const Line ray = {o.cast<long double>(), d.cast<long double>()};
+            inward += t > 0.01 * oracle.size;
+            EXPECT_NEAR(double(oracle.signed_distance(ray.at(t))), 0, t > 0 ? error : kMiss)
+                << oracle.size << " o " << o.transpose() << " d " << d.transpose();
+            for (int k = 0; k <= 16; ++k)
+                EXPECT_LE(double(oracle.signed_distance(ray.at(t * (k / 16.0L)))), error);
+            // Beyond it the distance grows: a hundredth of a size farther the ray is outside by
+            // more than it was, or on the flat face along which it runs.
+            const double beyond = double(oracle.signed_distance(ray.at(t + 0.01L * oracle.size)));
+            EXPECT_GE(beyond, -error)
+                << oracle.size << " o " << o.transpose() << " d " << d.transpose();
+        }
+    }
+    EXPECT_GT(inward, 1000);
+}
+
 TYPED_TEST(ShapeRay, AgreesWithSphereTracing) {
     int compared = 0;
     for_rays<TypeParam>(433, [&](const auto& shape, const Oracle& oracle, const Vec4& o,

@@ -54,6 +54,12 @@ count = [2, 3, 4, 5]
 spacing = [1, 2, 3, 4]
 jitter = 0.05
 seed = 7
+[[material]]
+name = "lens"
+kind = "glass"
+ior = 1.25
+roughness = 0.5
+emission = [0, 0.5, 2]
 [camera]
 position = [0, 1, -5, 2]
 up = [1, 1, 0, 0]
@@ -68,7 +74,19 @@ color = [0.1, 0.2, 0.3]
 [[light]]
 type = "sky"
 strength = 0.5
+[[light]]
+type = "point"
+position = [1, 2, 3, 4]
+color = [1, 0.5, 0]
+strength = 40
+[[light]]
+type = "sphere"
+position = [-1, 2, -3, 4]
+radius = 0.25
+strength = 3
 [render]
+integrator = "path"
+bounces = 7
 size = [640, 360]
 samples = 4
 channels = ["position", "color"]
@@ -119,6 +137,21 @@ TEST(LoadScene, ReadsEverything) {
     EXPECT_TRUE((scene.lights.suns[0].irradiance == 2).all());
     EXPECT_NEAR(scene.lights.suns[0].direction.norm(), 1, 1e-15);
     EXPECT_TRUE(scene.lights.sky.isApprox(render::Color(0.6, 0.7, 0.8), 1e-15));
+    ASSERT_EQ(scene.lights.points.size(), 1U);
+    EXPECT_EQ(scene.lights.points[0].position, Vec4(1, 2, 3, 4));
+    EXPECT_TRUE((scene.lights.points[0].flux == render::Color(40, 20, 0)).all());
+    ASSERT_EQ(scene.lights.spheres.size(), 1U);
+    EXPECT_EQ(scene.lights.spheres[0].position, Vec4(-1, 2, -3, 4));
+    EXPECT_EQ(scene.lights.spheres[0].radius, 0.25);
+    EXPECT_TRUE((scene.lights.spheres[0].radiance == 3).all());
+    EXPECT_EQ(scene.render.integrator, render::Integrator::kPath);
+    EXPECT_EQ(scene.render.bounces, 7);
+    ASSERT_EQ(scene.materials.size(), 3U);
+    EXPECT_EQ(scene.materials[1].kind, render::MaterialKind::kDiffuse);
+    EXPECT_EQ(scene.materials[2].kind, render::MaterialKind::kGlass);
+    EXPECT_EQ(scene.materials[2].ior, 1.25);
+    EXPECT_EQ(scene.materials[2].roughness, 0.5);
+    EXPECT_TRUE((scene.materials[2].emission == render::Color(0, 0.5, 2)).all());
     EXPECT_TRUE(scene.render.channels.position && !scene.render.channels.depth);
 }
 
@@ -135,6 +168,25 @@ TEST(LoadScene, EffectiveTextLoadsToItself) {
         EXPECT_EQ(first.bodies.rotor, second.bodies.rotor);
         EXPECT_EQ(first.appearance, second.appearance);
     }
+}
+
+TEST(LoadScene, EveryMaterialKindAndItsDefaults) {
+    using render::MaterialKind;
+    const std::pair<const char*, MaterialKind> kinds[] = {{"diffuse", MaterialKind::kDiffuse},
+                                                          {"mirror", MaterialKind::kMirror},
+                                                          {"glass", MaterialKind::kGlass},
+                                                          {"rough", MaterialKind::kRough}};
+    for (const auto& [name, kind] : kinds) {
+        const Scene scene =
+            load_text(fmt::format("[[material]]\nname = \"m\"\nkind = \"{}\"\n", name));
+        EXPECT_EQ(scene.materials.at(1).kind, kind) << name;
+        EXPECT_EQ(scene.materials[1].ior, 1.5);
+        EXPECT_EQ(scene.materials[1].roughness, 0.3);
+        EXPECT_TRUE((scene.materials[1].emission == 0).all());
+        EXPECT_NE(scene.effective.find(fmt::format("kind = \"{}\"", name)), std::string::npos);
+    }
+    EXPECT_EQ(load_text("[scene]").render.bounces, 4);
+    EXPECT_EQ(load_text("[render]\nbounces = 1000000").render.bounces, 1'000'000);
 }
 
 TEST(LoadScene, OddButLegal) {
@@ -270,7 +322,7 @@ TEST(Overrides, ErrorsNameTheEntry) {
         {"[physics]", "expected KEY=VALUE"},
         {"render.samples=1\nrender.tile=8", "control character"},
         {"physics.gravity.x=1", "\"gravity\" is no table"},
-        {"render.integrator=\"path\"", "not yet"},
+        {"render.integrator=\"pathe\"", "did you mean \"path\"?"},
         {"render.crop=[0, 0, 641, 10]", "x1 <= 640"},
         {"render.crop=[5, 0, 5, 10]", "x0 < x1"},
         {"render.crop=[-1, 0, 5, 10]", "crop[0] = -1"},
@@ -321,7 +373,9 @@ TEST(SceneHash, SeesEveryValue) {
     for (const char* picture :
          {"scene.name=\"b\"", "physics.duration=1", "body.floor.name=\"b\"",
           "body.floor.visible=false", "render.samples=1", "camera.field_of_view=49",
-          "light.0.color=[0,0,0]", "render.exposure=0", "render.crop=[0,0,1,1]",
+          "light.0.color=[0,0,0]", "light.3.strength=1", "light.3.position=[0,0,0,0]",
+          "light.4.radius=1", "render.integrator=\"direct\"", "render.bounces=0",
+          "render.exposure=0", "render.crop=[0,0,1,1]",
           "body.floor.material=\"dots \\\" \\\\ \\t ä\""}) {
         EXPECT_NE(changed(picture).hash, scene.hash) << picture;
         EXPECT_EQ(changed(picture).motion_hash, scene.motion_hash) << picture;

@@ -156,7 +156,7 @@ TEST(Program, WrongCommandLinesExitWithTwoAndSayWhy) {
         {{"run", scene, "-o", out, "--frames", "5"}, "frame 5"},
         {{"run", scene, "-o", out, "--frames", "x"}, "--frames x"},
         {{"run", scene, "-o", out, "--crop", "0,0,65,9"}, "crop"},
-        {{"run", scene, "-o", out, "--integrator", "path"}, "not yet"},
+        {{"run", scene, "-o", out, "--integrator", "pat"}, "path"},
         {{"run", scene, "-o", out, "--intersector", "magic"}, "analytic"},
         {{"run", scene, "-o", out, "--set", "physics.iteration=2"}, "iterations"},
         {{"run", scene, "-o", out, "--unknown"}, "unknown"},

@@ -1,0 +1,87 @@
+#include "render/light/cap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tesserae::render {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// x - sin x. Below 1 the alternating series: its first left out term is under 1e-17 of the first.
+double minus_sine(double x) {
+    if (x > 1) return x - std::sin(x);
+    double term = x * x * x / 6, sum = 0;
+    for (int n = 4; n <= 20; n += 2) {
+        sum += term;
+        term *= -x * x / (n * (n + 1));
+    }
+    return sum;
+}
+
+/// angle - sin cos.
+double cap_part(double angle) { return 0.5 * minus_sine(2 * angle); }
+
+Eigen::Vector3d uniform_sphere(double u, double v) {
+    const double z = 1 - 2 * u, across = std::sqrt(std::max(0.0, 1 - z * z));
+    return {across * std::cos(2 * kPi * v), across * std::sin(2 * kPi * v), z};
+}
+
+}  // namespace
+
+TangentFrame::TangentFrame(const Vec4& axis) : sign_(axis[3] > 0 ? -1 : 1) {
+    mirror_ = (axis - sign_ * Vec4::UnitW()).normalized();
+}
+
+Vec4 TangentFrame::to_world(const Vec4& local) const {
+    const Vec4 v(local[0], local[1], local[2], sign_ * local[3]);
+    return v - 2 * mirror_.dot(v) * mirror_;
+}
+
+Vec4 TangentFrame::to_local(const Vec4& world) const {
+    Vec4 v = world - 2 * mirror_.dot(world) * mirror_;
+    v[3] *= sign_;
+    return v;
+}
+
+Eigen::Vector3d uniform_ball(const Uniform3& u) {
+    return std::cbrt(u[0]) * uniform_sphere(u[1], u[2]);
+}
+
+Vec4 cosine_direction(const Uniform3& u) {
+    const Eigen::Vector3d p = uniform_ball(u);
+    return {p.x(), p.y(), p.z(), std::sqrt(std::max(0.0, 1 - p.squaredNorm()))};
+}
+
+double cap_solid_angle(double angle) { return 2 * kPi * cap_part(angle); }
+
+Vec4 cap_direction(double angle, const Uniform3& u) {
+    const double part = u[0] * cap_part(angle);
+    double polar = angle * std::cbrt(u[0]);
+    // From above, quadratically; five steps reach rounding from the cube-root start, and the step
+    // that no longer falls ends it.
+    for (int i = 0; i < 20; ++i) {
+        const double sine = std::sin(polar);
+        if (!(sine > 0)) break;
+        const double next = polar - (cap_part(polar) - part) / (2 * sine * sine);
+        if (!(next < polar)) break;
+        polar = next;
+    }
+    const double sine = std::sin(polar);
+    const Eigen::Vector3d across = sine * uniform_sphere(u[1], u[2]);
+    return {across.x(), across.y(), across.z(), std::cos(polar)};
+}
+
+double cap_irradiance(double angle, double altitude) {
+    if (altitude <= -angle) return 0;
+    const double sine = std::sin(angle);
+    if (altitude >= angle) return 4 * kPi / 3 * sine * sine * sine * std::sin(altitude);
+    // e = 1 - s and d = 1 - a of the docstring.
+    const double above = std::sin(0.5 * (altitude + angle));
+    const double e = 2 * above * above;
+    const double d = 2 * above * std::sin(0.5 * (angle - altitude)) / std::cos(altitude);
+    return kPi / 3 * e * (e + (2 - e) * d);
+}
+
+}  // namespace tesserae::render

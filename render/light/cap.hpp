@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+
+#include "core/algebra/vector.hpp"
+
+// Directions of 4D: points of S^3, and how to pick them. Three uniform numbers of [0, 1) make one.
+namespace tesserae::render {
+
+using Uniform3 = std::array<double, 3>;
+
+/// An orthonormal frame whose last axis is a given unit vector: the reflection that swaps it with
+/// the last axis (or its opposite, whichever is farther, so that nothing cancels).
+class TangentFrame {
+  public:
+    explicit TangentFrame(const Vec4& axis);
+
+    /// From (tangent, tangent, tangent, along the axis) to where the axis was given, and back.
+    Vec4 to_world(const Vec4& local) const;
+    Vec4 to_local(const Vec4& world) const;
+
+  private:
+    Vec4 mirror_;  ///< unit normal of the reflection
+    double sign_;  ///< of the last axis' image
+};
+
+/// A uniform point of the unit 3-ball.
+Eigen::Vector3d uniform_ball(const Uniform3& u);
+
+/// A direction of the hemisphere around the last axis, density 3 cos/(4 pi): a uniform point of the
+/// 3-ball lifted to the sphere, whose area element is dV/cos.
+Vec4 cosine_direction(const Uniform3& u);
+
+/// Solid angle of the cap of directions within `angle` of an axis: 2 pi (angle - sin cos), without
+/// the cancellation of small angles. `angle` 0 to pi.
+double cap_solid_angle(double angle);
+
+/// A direction of the cap around the last axis, uniform in solid angle, to a few roundings of its
+/// coordinates. The angle from the axis has density 4 pi sin^2; its distribution is inverted by
+/// Newton's method, which falls monotonically from the cube-root start as long as the function is
+/// convex: `angle` 0 to pi/2.
+Vec4 cap_direction(double angle, const Uniform3& u);
+
+/// Irradiance under a cap of radiance 1: its projection onto the surface.
+/// @param angle      half-angle of the cap, 0 to pi/2
+/// @param altitude   of its middle above the surface's horizon, -pi/2 to pi/2
+/// (4 pi/3) sin^3(angle) sin(altitude) for a cap wholly above the horizon, 0 for one below. Between
+/// them the projection is an ellipsoid's part and a ball's, cut along the axis toward the light:
+/// with s = sin(pi/2 - altitude - angle) and a = cos(angle)/cos(altitude) the integral of their
+/// sections is pi (2/3 - s + s^3/3 - (1 - s^2)(a - s)/3); exact, here without its cancellation.
+double cap_irradiance(double angle, double altitude);
+
+}  // namespace tesserae::render

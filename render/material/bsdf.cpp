@@ -1,0 +1,52 @@
+#include "render/material/bsdf.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "render/material/microfacet.hpp"
+
+namespace tesserae::render {
+namespace {
+
+constexpr double kLambert = 3 / (4 * std::numbers::pi);
+
+}  // namespace
+
+bool is_specular(const Material& m) {
+    return m.kind == MaterialKind::kMirror || m.kind == MaterialKind::kGlass ||
+           (m.kind == MaterialKind::kRough && m.roughness == 0);
+}
+
+Bsdf::Bsdf(const Surface& surface, const Vec4& out)
+    : surface_(surface),
+      frame_(surface.normal),
+      out_(frame_.to_local(out)),
+      is_rough_(surface.material->kind == MaterialKind::kRough) {}
+
+Color Bsdf::value(const Vec4& in) const {
+    if (!is_rough_) return kLambert * surface_.albedo;
+    const Microfacet facets(surface_.material->roughness);
+    return facets.brdf(out_, frame_.to_local(in)) * surface_.albedo;
+}
+
+double Bsdf::density(const Vec4& in) const {
+    if (!is_rough_) return kLambert * std::max(0.0, surface_.normal.dot(in));
+    return Microfacet(surface_.material->roughness).density(out_, frame_.to_local(in));
+}
+
+Bsdf::Sample Bsdf::sample(const Uniform3& u) const {
+    if (!is_rough_) {
+        const Vec4 in = cosine_direction(u);
+        return {frame_.to_world(in), surface_.albedo, kLambert * in[3]};
+    }
+    const Microfacet facets(surface_.material->roughness);
+    const Vec4 in = out_[3] > 0 ? facets.sample(out_, u) : Vec4(-Vec4::UnitW());
+    Sample sample = {frame_.to_world(in), Color::Zero(), 0};
+    if (!(in[3] > 0)) return sample;
+    sample.density = facets.density(out_, in);
+    if (sample.density > 0)
+        sample.weight = surface_.albedo * (facets.brdf(out_, in) * in[3] / sample.density);
+    return sample;
+}
+
+}  // namespace tesserae::render
