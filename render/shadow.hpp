@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "render/body_tree.hpp"
 #include "render/frame.hpp"
-#include "render/shadow_tree.hpp"
 
 namespace tesserae::render {
 
@@ -53,7 +53,7 @@ class Shadows {
                    FrameStats& stats) const;
 
     const PlacedBodies& placed_;
-    ShadowTree tree_;
+    BodyTree tree_;
     std::vector<std::uint32_t> unbounded_;
 };
 
