@@ -14,6 +14,7 @@ namespace {
 
 using Four = Eigen::Array4f;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 /// Part of a body's coordinates and size by which its bounds are widened: three times the rounding
 /// of a double to a float, and a million times what any hit is out by.
 constexpr double kWiden = 2e-7;
@@ -74,8 +75,7 @@ struct Part {
 struct Branch {
     Part part;
     std::vector<Branch> halves;  ///< two, or none: a leaf
-    /// Least cost of the branch as at most i + 1 children of a wide node, relative to the cost of
-    /// one test for every ray.
+    /// Least cost of the branch as at most i + 1 children of a wide node.
     std::array<double, kLanes> cost;
 };
 
@@ -95,14 +95,12 @@ Shares share(const Branch& branch, std::size_t places) {
 }
 
 void set_costs(Branch& branch) {
-    const double content = branch.part.box.half_boundary();
-    branch.cost[0] = content;
-    if (!branch.halves.empty()) branch.cost[0] += share(branch, kLanes).cost;
-    for (std::size_t i = 1; i < kLanes; ++i) {
-        branch.cost[i] = branch.cost[i - 1];
-        if (!branch.halves.empty())
-            branch.cost[i] = std::min(branch.cost[i], share(branch, i + 1).cost);
-    }
+    // A node's test and a leaf's take about the same time.
+    branch.cost.fill(branch.part.box.half_boundary());
+    if (branch.halves.empty()) return;
+    branch.cost[0] += share(branch, kLanes).cost;
+    for (std::size_t i = 1; i < kLanes; ++i)
+        branch.cost[i] = std::min(branch.cost[i - 1], share(branch, i + 1).cost);
 }
 
 /// What stands for a branch among the children of a wide node when it may take `places` of them.
@@ -170,7 +168,7 @@ class BodyTreeBuilder {
     void try_key(const Part& part, Split split, Split& best) const;
     std::uint32_t add_node(const Branch& branch);
     std::uint32_t add_leaf(const Part& part);
-    void set_ball(BodyTree::Balls& balls, int lane, const Part& part) const;
+    void set_ball(BodyTree::Balls& balls, std::size_t lane, const Part& part) const;
 
     BodyTree& tree_;
     const PlacedBodies& placed_;
@@ -262,11 +260,6 @@ void BodyTreeBuilder::try_key(const Part& part, Split split, Split& best) const 
 }
 
 std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
-    const auto index = static_cast<std::uint32_t>(tree_.nodes_.size());
-    TSR_ASSERT(index < BodyTree::kLeaf);
-    BodyTree::Node node{};
-    for (auto& sides : node.sides) sides = {all_lanes(kInfinite), all_lanes(-kInfinite)};
-    node.balls.radius = all_lanes(-kInfinite);
     // The root is a node even where one leaf would do.
     std::vector<const Branch*> children;
     if (branch.halves.empty()) {
@@ -276,38 +269,43 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
         collect(branch.halves[0], first, children);
         collect(branch.halves[1], kLanes - first, children);
     }
-    for (std::size_t lane = 0; lane < children.size(); ++lane) {
-        const Part& part = children[lane]->part;
+    BodyTree::Node node{};
+    node.boxes.fill({all_lanes(kInfinite), all_lanes(-kInfinite)});
+    node.balls.radius = all_lanes(kNoNumber);
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        const Part& part = children[i]->part;
         for (std::size_t axis = 0; axis < 4; ++axis) {
-            node.sides[axis][0][lane] = part.box.low[static_cast<int>(axis)];
-            node.sides[axis][1][lane] = part.box.high[static_cast<int>(axis)];
+            node.boxes[axis][0][i] = part.box.low[static_cast<int>(axis)];
+            node.boxes[axis][1][i] = part.box.high[static_cast<int>(axis)];
         }
-        set_ball(node.balls, static_cast<int>(lane), part);
+        set_ball(node.balls, i, part);
     }
+    const std::size_t index = tree_.nodes_.size();
+    TSR_ASSERT(index < BodyTree::kLeaf);
     tree_.nodes_.push_back(node);
-    for (std::size_t lane = 0; lane < children.size(); ++lane) {
-        const Branch& child = *children[lane];
+    for (std::size_t i = 0; i < children.size(); ++i) {
+        const Branch& child = *children[i];
         const std::uint32_t at = child.halves.empty() ? add_leaf(child.part) : add_node(child);
-        tree_.nodes_[index].child[lane] = at;
+        tree_.nodes_[index].child[i] = at;
     }
-    return index;
+    return static_cast<std::uint32_t>(index);
 }
 
 std::uint32_t BodyTreeBuilder::add_leaf(const Part& part) {
     BodyTree::Leaf leaf{};
-    for (std::size_t lane = 0; lane < part.size(); ++lane) {
-        const Member& m = members_[part.begin + lane];
-        for (std::size_t axis = 0; axis < 4; ++axis) leaf.balls.centre[axis][lane] = m.key[axis];
-        leaf.balls.radius[lane] = m.radius;
-        leaf.body[lane] = m.body;
-        leaf.members |= 1u << lane;
+    leaf.balls.radius = all_lanes(kNoNumber);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        const Member& m = members_[part.begin + i];
+        for (std::size_t axis = 0; axis < 4; ++axis) leaf.balls.centre[axis][i] = m.key[axis];
+        leaf.balls.radius[i] = m.radius;
+        leaf.body[i] = m.body;
     }
     tree_.leaves_.push_back(leaf);
     return BodyTree::kLeaf | static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
 }
 
 /// The ball about the middle of the part's box that holds its bodies' bounding spheres.
-void BodyTreeBuilder::set_ball(BodyTree::Balls& balls, int lane, const Part& part) const {
+void BodyTreeBuilder::set_ball(BodyTree::Balls& balls, std::size_t lane, const Part& part) const {
     const Four centre = 0.5f * (part.box.low + part.box.high);
     float radius = 0;
     for (std::size_t i = part.begin; i < part.end; ++i) {
@@ -323,17 +321,21 @@ void BodyTreeBuilder::set_ball(BodyTree::Balls& balls, int lane, const Part& par
 BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).build(); }
 
 BodyTree::Ray BodyTree::ray_of(const Vec4& origin, const Vec4& direction) {
+    // Across an axis a ray moves by no more than this a metre: it keeps the inverse finite, and
+    // rounding's widening of the bounds is more.
+    constexpr double kLeast = 1e-18;
     Ray ray;
     const double slack = kWiden * origin.lpNorm<1>();
     for (std::size_t i = 0; i < 4; ++i) {
         const double o = origin[static_cast<int>(i)], d = direction[static_cast<int>(i)];
+        const double inverse = 1 / (std::abs(d) > kLeast ? d : kLeast);
+        const double half = slack * std::abs(inverse);
         ray.origin[i] = static_cast<float>(o);
         ray.direction[i] = static_cast<float>(d);
-        ray.inverse[i] = static_cast<float>(1 / d);
-        const bool back = ray.inverse[i] < 0;
-        ray.enter_side[i] = back;
-        ray.enter[i] = static_cast<float>(back ? o - slack : o + slack);
-        ray.leave[i] = static_cast<float>(back ? o + slack : o - slack);
+        ray.inverse[i] = static_cast<float>(inverse);
+        ray.enter_side[i] = inverse < 0;
+        ray.enter[i] = static_cast<float>(-o * inverse - half);
+        ray.leave[i] = static_cast<float>(-o * inverse + half);
     }
     ray.slack = static_cast<float>(10 * slack);
     return ray;
@@ -345,8 +347,8 @@ std::uint64_t BodyTree::fingerprint() const {
         const auto* bytes = reinterpret_cast<const unsigned char*>(&part);
         for (std::size_t i = 0; i < sizeof part; ++i) hash = (hash ^ bytes[i]) * 1099511628211u;
     };
-    for (const Node& node : nodes_) add(node.sides), add(node.balls), add(node.child);
-    for (const Leaf& leaf : leaves_) add(leaf.balls), add(leaf.body), add(leaf.members);
+    for (const Node& node : nodes_) add(node);
+    for (const Leaf& leaf : leaves_) add(leaf);
     return hash;
 }
 

@@ -6,7 +6,7 @@
 #endif
 
 // Eight floats at once, by the vector extension of gcc and clang: one instruction where the CPU has
-// AVX, several elsewhere, with the same results.
+// AVX, several elsewhere. For bounds, which are rounded outward: nothing here decides a pixel.
 namespace tesserae::render {
 
 constexpr int kLanes = 8;
@@ -19,6 +19,15 @@ inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 /// The smaller of both; b where a is no number.
 inline Lanes smaller(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes magnitude(Lanes v) { return larger(v, -v); }
+
+/// a * b + c, where the CPU can with one rounding.
+inline Lanes product_sum(Lanes a, Lanes b, Lanes c) {
+#ifdef __FMA__
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
 
 inline Lanes square_root(Lanes v) {
 #ifdef __AVX__
