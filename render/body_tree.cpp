@@ -168,7 +168,6 @@ class BodyTreeBuilder {
     void try_key(const Part& part, Split split, Split& best) const;
     std::uint32_t add_node(const Branch& branch);
     std::uint32_t add_leaf(const Part& part);
-    void set_ball(BodyTree::Balls& balls, std::size_t lane, const Part& part) const;
 
     BodyTree& tree_;
     const PlacedBodies& placed_;
@@ -271,14 +270,12 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
     }
     BodyTree::Node node{};
     node.boxes.fill({all_lanes(kInfinite), all_lanes(-kInfinite)});
-    node.balls.radius = all_lanes(kNoNumber);
     for (std::size_t i = 0; i < children.size(); ++i) {
         const Part& part = children[i]->part;
         for (std::size_t axis = 0; axis < 4; ++axis) {
             node.boxes[axis][0][i] = part.box.low[static_cast<int>(axis)];
             node.boxes[axis][1][i] = part.box.high[static_cast<int>(axis)];
         }
-        set_ball(node.balls, i, part);
     }
     const std::size_t index = tree_.nodes_.size();
     TSR_ASSERT(index < BodyTree::kLeaf);
@@ -293,51 +290,50 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
 
 std::uint32_t BodyTreeBuilder::add_leaf(const Part& part) {
     BodyTree::Leaf leaf{};
-    leaf.balls.radius = all_lanes(kNoNumber);
+    leaf.radius = all_lanes(kNoNumber);
     for (std::size_t i = 0; i < part.size(); ++i) {
         const Member& m = members_[part.begin + i];
-        for (std::size_t axis = 0; axis < 4; ++axis) leaf.balls.centre[axis][i] = m.key[axis];
-        leaf.balls.radius[i] = m.radius;
+        for (std::size_t axis = 0; axis < 4; ++axis) leaf.centre[axis][i] = m.key[axis];
+        leaf.radius[i] = m.radius;
         leaf.body[i] = m.body;
     }
     tree_.leaves_.push_back(leaf);
     return BodyTree::kLeaf | static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
 }
 
-/// The ball about the middle of the part's box that holds its bodies' bounding spheres.
-void BodyTreeBuilder::set_ball(BodyTree::Balls& balls, std::size_t lane, const Part& part) const {
-    const Four centre = 0.5f * (part.box.low + part.box.high);
-    float radius = 0;
-    for (std::size_t i = part.begin; i < part.end; ++i) {
-        const Member& m = members_[i];
-        const Four offset = Four(m.key[0], m.key[1], m.key[2], m.key[3]) - centre;
-        radius = std::max(radius, std::sqrt(offset.square().sum()) + m.radius);
-    }
-    for (std::size_t axis = 0; axis < 4; ++axis)
-        balls.centre[axis][lane] = centre[static_cast<int>(axis)];
-    balls.radius[lane] = radius * (1 + 1e-6f);
-}
-
 BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).build(); }
 
-BodyTree::Ray BodyTree::ray_of(const Vec4& origin, const Vec4& direction) {
-    // Across an axis a ray moves by no more than this a metre: it keeps the inverse finite, and
-    // rounding's widening of the bounds is more.
+BodyTree::Ray BodyTree::ray_of(const Vec4& origin, const Vec4& direction, const Cone& cone) {
+    // No slope is less than this: it keeps the inverse finite, and a ray leaves its place by less
+    // than the bounds' widening.
     constexpr double kLeast = 1e-18;
-    Ray ray;
     const double slack = kWiden * origin.lpNorm<1>();
+    const double tangent = cone.sine > 0 ? (1 + kWiden) * cone.sine / cone.cosine : 0;
+    Ray ray;
     for (std::size_t i = 0; i < 4; ++i) {
         const double o = origin[static_cast<int>(i)], d = direction[static_cast<int>(i)];
-        const double inverse = 1 / (std::abs(d) > kLeast ? d : kLeast);
-        const double half = slack * std::abs(inverse);
         ray.origin[i] = static_cast<float>(o);
         ray.direction[i] = static_cast<float>(d);
-        ray.inverse[i] = static_cast<float>(inverse);
-        ray.enter_side[i] = inverse < 0;
-        ray.enter[i] = static_cast<float>(-o * inverse - half);
-        ray.leave[i] = static_cast<float>(-o * inverse + half);
+        const double least = d - tangent, most = d + tangent;
+        const bool forward = least > -kLeast, backward = !forward && most < kLeast;
+        ray.opens[i] = !forward && !backward;
+        // A point is beyond the low side from where o + t most reaches it, and before the high side
+        // up to where o + t least does.
+        const double to_low = 1 / (backward ? std::min(most, -kLeast) : std::max(most, kLeast));
+        const double to_high =
+            tangent == 0 ? to_low
+                         : 1 / (forward ? std::max(least, kLeast) : std::min(least, -kLeast));
+        const auto side = [&](std::size_t which, double inverse, double widening) {
+            return Side{which, static_cast<float>(inverse),
+                        static_cast<float>(-o * inverse + widening * std::abs(inverse))};
+        };
+        ray.enter[i] = backward ? side(1, to_high, -slack) : side(0, to_low, -slack);
+        ray.leave[i] =
+            backward ? side(0, to_low, slack) : side(1, to_high, ray.opens[i] ? -slack : slack);
     }
     ray.slack = static_cast<float>(10 * slack);
+    ray.sine = static_cast<float>(cone.sine);
+    ray.cosine = static_cast<float>(cone.cosine);
     return ray;
 }
 
