@@ -3,14 +3,9 @@
 #include <limits>
 
 namespace tesserae::render {
-namespace {
-
-constexpr Cone kLine = {0, 1};
-
-}  // namespace
 
 RayScene::RayScene(const PlacedBodies& placed, const Settings& settings)
-    : placed_(placed), settings_(settings), tree_(placed.bodies) {
+    : placed_(placed), settings_(settings), tree_(placed) {
     for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
         if (placed.bodies[i].radius == std::numeric_limits<double>::infinity())
             unbounded_.push_back(i);
@@ -29,7 +24,7 @@ Hit RayScene::nearest(const Vec4& origin, const Vec4& direction, double limit, s
         return true;
     };
     for (const std::uint32_t body : unbounded_) visit(body);
-    tree_.for_each_in_cone(origin, direction, kLine, visit);
+    tree_.for_each_on_ray(origin, direction, limit, visit);
     return hit;
 }
 
@@ -43,7 +38,7 @@ bool RayScene::is_blocked(const Vec4& origin, const Vec4& direction, double limi
     };
     for (const std::uint32_t body : unbounded_)
         if (!clears(body)) return true;
-    tree_.for_each_in_cone(origin, direction, kLine, clears);
+    tree_.for_each_on_ray(origin, direction, limit, clears);
     return blocked;
 }
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/body_tree.hpp"
 #include "render/intersect.hpp"
-#include "render/shadow_tree.hpp"
 
 namespace tesserae::render {
 
@@ -31,7 +31,7 @@ class RayScene {
   private:
     const PlacedBodies& placed_;
     const Settings& settings_;
-    ShadowTree tree_;
+    BodyTree tree_;
     std::vector<std::uint32_t> unbounded_;
 };
 

@@ -159,7 +159,7 @@ double visible_part(double x) {
     return 0.25 * (2 + 3 * x - x * x * x);
 }
 
-Shadows::Shadows(const PlacedBodies& placed) : placed_(placed), tree_(placed.bodies) {
+Shadows::Shadows(const PlacedBodies& placed) : placed_(placed), tree_(placed) {
     for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
         if (placed.bodies[i].radius == std::numeric_limits<double>::infinity())
             unbounded_.push_back(i);

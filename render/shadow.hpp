@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "render/body_tree.hpp"
 #include "render/frame.hpp"
-#include "render/shadow_tree.hpp"
 
 namespace tesserae::render {
 
@@ -62,10 +62,10 @@ class Shadows {
     bool is_hidden(const LightDisc& light, const Vec4& point, std::uint32_t on,
                    FrameStats& stats) const;
 
-    const PlacedBodies& placed_;
     bool is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const;
 
-    ShadowTree tree_;
+    const PlacedBodies& placed_;
+    BodyTree tree_;
     std::vector<std::uint32_t> unbounded_;
 };
 

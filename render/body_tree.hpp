@@ -1,0 +1,249 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "render/lanes.hpp"
+#include "render/placed_bodies.hpp"
+
+namespace tesserae::render {
+
+/// The directions within an angle (possibly negative) of an axis, from an apex.
+struct Cone {
+    double sine, cosine;  ///< of the half-angle, within +-90 degrees
+};
+
+/// A hierarchy of 4D boxes over all bounded bodies, eight children to a node, tested at once by
+/// wide arithmetic: for rays that leave the camera's hyperplane, so over whole bodies, not their
+/// slices. Leaves hold up to eight bodies by their bounding spheres, which in 4D are tighter than
+/// boxes for all but long bodies. Bounds are floats rounded outward, and by far more than the
+/// tolerance of any hit: the walks may name a body that is not met, and never leave out one that
+/// is.
+class BodyTree {
+  public:
+    /// Built on the threads of the caller's task arena; the same bodies give the same tree on any
+    /// number of them.
+    explicit BodyTree(const PlacedBodies& placed);
+
+    /// Calls visit(body index) for every bounded body that the ray may meet no farther than
+    /// `limit`, roughly nearest first; visit may lower `limit` (a reference to the caller's), and
+    /// returns false to end the walk.
+    /// @param direction   unit
+    template <class Visit>
+    void for_each_on_ray(const Vec4& origin, const Vec4& direction, const double& limit,
+                         Visit&& visit) const;
+
+    /// Calls visit(body index) for every bounded body whose bounding sphere may reach into the
+    /// cone about `direction` (unit) from `apex`; visit may narrow the cone (a reference to the
+    /// caller's), and returns false to end the walk.
+    template <class Visit>
+    void for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
+                          Visit&& visit) const;
+
+    /// A hash of the whole tree, for tests.
+    std::uint64_t fingerprint() const;
+
+  private:
+    friend class BodyTreeBuilder;
+    /// Marks a child that is a leaf, not a node.
+    static constexpr std::uint32_t kLeaf = 0x80000000u;
+    /// The difference of squares in a sphere's test cancels: far away a sphere counts as wider, by
+    /// 1/1000 of the distance at most, which is twice what the roundings can make of it.
+    static constexpr float kSquareSlack = 1e-6f;
+
+    /// By axis the low sides and the high sides; low > high where a lane is not used.
+    using Boxes = std::array<std::array<Lanes, 2>, 4>;
+    struct Node {
+        Boxes boxes;
+        std::array<std::uint32_t, kLanes> child;
+    };
+    /// Where a lane is not used the radius is no number, and nothing meets it.
+    struct Leaf {
+        std::array<Lanes, 4> centre;
+        Lanes radius;
+        std::array<std::uint32_t, kLanes> body;
+    };
+
+    /// A side of a box, as a distance along a ray: coordinate * inverse + shift.
+    struct Side {
+        std::size_t side;  ///< 0 low, 1 high
+        float inverse, shift;
+    };
+    /// What the tests of one ray or cone have in common. A cone about d is, along every axis, no
+    /// wider than rays of slopes d - tan and d + tan.
+    struct Ray {
+        std::array<float, 4> origin, direction;
+        std::array<Side, 4> enter, leave;
+        /// A cone opens to both sides of this axis: it leaves no box there, and enters by both.
+        std::array<bool, 4> opens;
+        float slack;  ///< the origin's rounding
+        float sine, cosine;
+    };
+    static Ray ray_of(const Vec4& origin, const Vec4& direction, const Cone& cone);
+    /// Which boxes the ray, or cone, meets within the limit, and where it enters them.
+    template <bool kCone>
+    static std::uint32_t boxes_met(const Boxes& boxes, const Ray& ray, float limit, Lanes& enter);
+    /// Which spheres the ray meets, and where it enters them.
+    static std::uint32_t balls_on_ray(const Leaf& leaf, const Ray& ray, float limit, Lanes& enter);
+    /// Which spheres the cone may meet.
+    static std::uint32_t balls_in_cone(const Leaf& leaf, const Ray& cone);
+    /// Calls visit(leaf) for the leaves that the ray meets, roughly nearest first; both may change
+    /// on the way. Ends when visit returns false.
+    template <bool kCone, class Visit>
+    void for_each_leaf(const Ray& ray, const float& limit, Visit&& visit) const;
+
+    /// A limit as a float that is no smaller, or far: unused lanes are farther.
+    static float rounded_up(double v) {
+        constexpr float kFar = 3e38f;
+        const float f = static_cast<float>(v);
+        return std::min(f < v ? f + f * 1.2e-7f : f, kFar);
+    }
+
+    /// At most seven children wait at every level; the builder bounds the levels: 48 by cost, and
+    /// 32 more that halve.
+    static constexpr std::size_t kWaiting = (kLanes - 1) * 80 + kLanes;
+
+    std::vector<Node> nodes_;  ///< the root first; empty without bodies
+    std::vector<Leaf> leaves_;
+};
+
+template <bool kCone>
+std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Ray& ray, float limit, Lanes& enter) {
+    Lanes first = all_lanes(0), last = all_lanes(limit);
+    const auto distance = [&](std::size_t axis, const Side& side) {
+        return product_sum(boxes[axis][side.side], all_lanes(side.inverse), all_lanes(side.shift));
+    };
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+        first = larger(distance(axis, ray.enter[axis]), first);
+        if (kCone && ray.opens[axis])
+            first = larger(distance(axis, ray.leave[axis]), first);
+        else
+            last = smaller(distance(axis, ray.leave[axis]), last);
+    }
+    enter = first;
+    // Both are right to three roundings.
+    return not_above(first, last * (1 + 1e-6f));
+}
+
+inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Ray& ray, float limit,
+                                            Lanes& enter) {
+    Lanes along = all_lanes(0), square = all_lanes(0);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+        const Lanes v = leaf.centre[axis] - ray.origin[axis];
+        along = product_sum(v, all_lanes(ray.direction[axis]), along);
+        square = product_sum(v, v, square);
+    }
+    const Lanes radius = leaf.radius + ray.slack;
+    const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
+    const Lanes chord = product_sum(along, along, power);
+    // Behind the origin: that is outside, and the middle of the chord lies back.
+    const std::uint32_t met =
+        not_above(all_lanes(0), chord) & not_above(all_lanes(0), larger(along, power));
+    if (met == 0) return 0;
+    enter = along - square_root(larger(chord, all_lanes(0)));
+    return met & not_above(enter, all_lanes(limit));
+}
+
+inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Ray& cone) {
+    Lanes along = all_lanes(0), square = all_lanes(0);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+        const Lanes v = leaf.centre[axis] - cone.origin[axis];
+        along = product_sum(v, all_lanes(cone.direction[axis]), along);
+        square = product_sum(v, v, square);
+    }
+    // The centre lies off cos - along sin from the cone's side, and before the apex if it is met.
+    const Lanes radius = leaf.radius + cone.slack;
+    const Lanes reach = larger(product_sum(along, all_lanes(cone.sine), radius), all_lanes(0));
+    const Lanes off = (square - along * along) * (cone.cosine * cone.cosine);
+    return not_above(off, product_sum(reach, reach, square * kSquareSlack)) &
+           not_above(all_lanes(0), along + radius);
+}
+
+template <bool kCone, class Visit>
+void BodyTree::for_each_leaf(const Ray& ray, const float& limit, Visit&& visit) const {
+    if (nodes_.empty()) return;
+    struct Waiting {
+        std::uint32_t child;
+        float enter;
+    };
+    std::array<Waiting, kWaiting> waiting;
+    std::size_t count = 0;
+    for (Waiting next = {0, 0};;) {
+        if ((next.child & kLeaf) != 0) {
+            if (!visit(leaves_[next.child & ~kLeaf])) return;
+        } else {
+            const Node& node = nodes_[next.child];
+            Lanes enter;
+            std::uint32_t met = boxes_met<kCone>(node.boxes, ray, limit, enter);
+            if (met) {
+                // The nearest child is next, the others wait, the nearer ones on top.
+                const auto child = [&](std::uint32_t bits) {
+                    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+                    return Waiting{node.child[lane], enter[lane]};
+                };
+                const std::size_t begin = count;
+                next = child(met);
+                for (met &= met - 1; met; met &= met - 1) {
+                    Waiting farther = child(met);
+                    if (farther.enter < next.enter) std::swap(farther, next);
+                    std::size_t at = count++;
+                    for (; at > begin && waiting[at - 1].enter < farther.enter; --at)
+                        waiting[at] = waiting[at - 1];
+                    waiting[at] = farther;
+                }
+                continue;
+            }
+        }
+        do {
+            if (count == 0) return;
+            next = waiting[--count];
+        } while (next.enter > limit);
+    }
+}
+
+template <class Visit>
+void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const double& limit,
+                               Visit&& visit) const {
+    const Ray ray = ray_of(origin, direction, {0, 1});
+    float reach = rounded_up(limit);
+    for_each_leaf<false>(ray, reach, [&](const Leaf& leaf) {
+        Lanes enter;
+        std::uint32_t met = balls_on_ray(leaf, ray, reach, enter);
+        while (met) {
+            auto lane = static_cast<std::size_t>(std::countr_zero(met));
+            for (std::uint32_t rest = met & (met - 1); rest; rest &= rest - 1) {
+                const auto other = static_cast<std::size_t>(std::countr_zero(rest));
+                if (enter[other] < enter[lane]) lane = other;
+            }
+            met &= ~(1u << lane);
+            if (enter[lane] > reach) break;
+            if (!visit(leaf.body[lane])) return false;
+            reach = rounded_up(limit);
+        }
+        return true;
+    });
+}
+
+template <class Visit>
+void BodyTree::for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
+                                Visit&& visit) const {
+    Ray ray = ray_of(apex, direction, cone);
+    double sine = cone.sine;
+    const float reach = rounded_up(kMiss);
+    for_each_leaf<true>(ray, reach, [&](const Leaf& leaf) {
+        for (std::uint32_t met = balls_in_cone(leaf, ray); met; met &= met - 1)
+            if (!visit(leaf.body[static_cast<std::size_t>(std::countr_zero(met))])) return false;
+        if (cone.sine != sine) {
+            ray = ray_of(apex, direction, cone);
+            sine = cone.sine;
+        }
+        return true;
+    });
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,201 @@
+#include "render/ray_scene.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+#include "tests/render/test_scene.hpp"
+
+namespace tesserae::render {
+namespace {
+
+constexpr std::uint32_t kNoBody = RayScene::kNoBody;
+
+/// What RayScene::nearest promises, by trying every body.
+Hit nearest_of_all(const PlacedBodies& placed, const Vec4& origin, const Vec4& direction,
+                   double limit, std::uint32_t on, const Settings& settings) {
+    Hit best;
+    FrameStats stats;
+    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
+        if (b == on) continue;
+        const double t = hit_distance(placed, b, origin, direction, limit, settings, stats);
+        if (t < best.distance) best = {t, b};
+    }
+    return best;
+}
+
+struct Rays {
+    int traced = 0, hit = 0;
+};
+
+/// Compares one ray both ways, with and without a limit and a body left out.
+void compare(const TestScene& scene, const PlacedBodies& placed, const RayScene& rays,
+             const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
+             Rays& count) {
+    FrameStats stats;
+    const Hit expected = nearest_of_all(placed, origin, direction, limit, on, scene.settings);
+    const Hit hit = rays.nearest(origin, direction, limit, on, stats);
+    ASSERT_EQ(hit.distance, expected.distance)
+        << origin.transpose() << " toward " << direction.transpose();
+    ASSERT_EQ(hit.body, expected.body) << origin.transpose() << " toward " << direction.transpose();
+    ASSERT_EQ(rays.is_blocked(origin, direction, limit, on, stats), bool(expected))
+        << origin.transpose() << " toward " << direction.transpose();
+    ++count.traced;
+    count.hit += expected ? 1 : 0;
+}
+
+/// Directions of all kinds: anywhere, along one, two or three axes, and nearly so.
+Vec4 any_direction(Random& random) {
+    Vec4 d = random_direction(random);
+    for (int axis = 0; axis < 4; ++axis) {
+        const double kind = uniform(random, 0, 4);
+        if (kind < 0.8) d[axis] = 0;
+        if (kind > 3.6) d[axis] *= 1e-25;
+        if (kind > 3.8) d[axis] = -0.0;
+    }
+    if (!(d.norm() > 1e-3)) d = (uniform(random, 0, 1) < 0.5 ? -1 : 1) * Vec4::Unit(random() % 4);
+    return d.normalized();
+}
+
+TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest) {
+    Random random(seed);
+    TestScene scene;
+    for (int i = 0; i < count; ++i) {
+        const double size = std::exp(uniform(random, std::log(least), std::log(largest)));
+        scene.add(random_shape(random, i % 3, size), random_vector(random, spread),
+                  random_rotor(random));
+    }
+    return scene;
+}
+
+void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double spread, Rays& count) {
+    Random random(seed);
+    const PlacedBodies placed = place_bodies(scene.picture(), scene.camera.position);
+    for (const Intersector intersector : {Intersector::kAnalytic, Intersector::kTrace}) {
+        scene.settings.intersector = intersector;
+        const RayScene rays(placed, scene.settings);
+        const auto bodies = static_cast<std::uint32_t>(placed.bodies.size());
+        for (int i = 0; i < rays_each; ++i) {
+            Vec4 origin = random_vector(random, spread) - scene.camera.position;
+            Vec4 direction = any_direction(random);
+            // Half of the rays start at a body's centre or a side of its box, or aim at a body.
+            const PlacedBody& body = placed.bodies[random() % bodies];
+            const bool bounded = body.radius < kMiss;
+            if (i % 4 == 0 && bounded) direction = (body.centre - origin).normalized();
+            if (i % 4 == 1 && bounded) {
+                origin = body.centre;
+                origin[static_cast<int>(random() % 4)] += (i % 8 < 4 ? -1 : 1) * body.radius;
+            }
+            const double limit = i % 3 == 0 ? uniform(random, 0, spread) : kMiss;
+            const std::uint32_t on =
+                i % 5 == 0 ? static_cast<std::uint32_t>(random() % bodies) : kNoBody;
+            compare(scene, placed, rays, origin, direction, limit, on, count);
+            if (::testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(RayScene, FindsWhatTryingAllBodiesFinds) {
+    Rays count;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        TestScene scene = cloud(seed, 20 + 40 * static_cast<int>(seed), 4, 0.1, 0.8);
+        if (seed % 3 == 0) scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero());
+        compare_many(scene, 50 + seed, 5000, 5, count);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(count.traced, 120000);
+    EXPECT_GT(count.hit, 40000);
+}
+
+TEST(RayScene, FindsTinyBodiesAmongHugeOnes) {
+    // Sizes of 1 to 10^6; the tree's fifth key is there for them.
+    Rays count;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        TestScene scene = cloud(70 + seed, 200, 3, 1e-4, 0.3);
+        scene.add(Hypersphere{100}, {0, 0, 0, 103});
+        scene.add(Hyperbox{{300, 1, 300, 300}}, {0, -4, 0, 0});
+        compare_many(scene, 80 + seed, 3000, 4, count);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(count.hit, 15000);
+}
+
+TEST(RayScene, FarFromTheCamera) {
+    // 10^5 m, where a float is good to 8 mm.
+    Rays count;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        TestScene scene = cloud(90 + seed, 150, 3, 0.01, 0.5);
+        Random random(seed);
+        scene.camera.position = 1e5 * random_direction(random);
+        compare_many(scene, 95 + seed, 4000, 4, count);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(count.hit, 6000);
+}
+
+TEST(RayScene, BodiesInOnePlaceAndOnAGrid) {
+    // A hundred bodies in one place: nothing tells them apart, and the lowest id wins. Unit boxes
+    // on a grid: rays along their shared sides.
+    TestScene heap, grid;
+    for (int i = 0; i < 100; ++i) heap.add(Hypersphere{1}, {0, 0, 3, 0});
+    for (int i = 0; i < 256; ++i)
+        grid.add(Hyperbox{Vec4::Ones()}, Vec4(i & 3, i >> 2 & 3, i >> 4 & 3, i >> 6));
+    Rays count;
+    compare_many(heap, 1, 3000, 4, count);
+    if (HasFatalFailure()) return;
+    const int in_heap = count.hit;
+    EXPECT_GT(in_heap, 1500);
+    const PlacedBodies placed = place_bodies(grid.picture(), Vec4::Zero());
+    const RayScene rays(placed, grid.settings);
+    Random random(5);
+    for (int i = 0; i < 20000; ++i) {
+        Vec4 origin;
+        for (int k = 0; k < 4; ++k) origin[k] = 0.5 * static_cast<double>(random() % 13) - 1;
+        const Vec4 direction = i % 2 == 0 ? any_direction(random)
+                                          : Vec4((i % 4 == 1 ? -1 : 1) * Vec4::Unit(random() % 4));
+        compare(grid, placed, rays, origin, direction, kMiss, kNoBody, count);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(count.hit - in_heap, 5000);
+}
+
+TEST(RayScene, NoBodiesOneBodyOnlyPlanes) {
+    for (const int kind : {0, 1, 2}) {
+        TestScene scene;
+        if (kind == 1) scene.add(Hypersphere{1}, {0, 0, 5, 0});
+        if (kind == 2) scene.add(Hyperplane{-Vec4::UnitZ(), -4}, Vec4::Zero());
+        const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
+        const RayScene rays(placed, scene.settings);
+        FrameStats stats;
+        const Hit hit = rays.nearest(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats);
+        EXPECT_EQ(hit.distance, kind == 0 ? kMiss : 4);
+        EXPECT_EQ(rays.is_blocked(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats), kind != 0);
+        EXPECT_FALSE(rays.nearest(Vec4::Zero(), -Vec4::UnitZ(), kMiss, kNoBody, stats));
+        EXPECT_FALSE(rays.nearest(Vec4::Zero(), Vec4::UnitZ(), 3.9, kNoBody, stats));
+        if (kind != 0) {
+            EXPECT_FALSE(rays.nearest(Vec4::Zero(), Vec4::UnitZ(), kMiss, 0, stats));
+        }
+    }
+}
+
+TEST(BodyTree, TheSameForAnyNumberOfThreads) {
+    TestScene scene = cloud(7, 6000, 10, 0.01, 1);
+    for (int i = 0; i < 1000; ++i) scene.add(Hypersphere{0.1}, Vec4::Ones());
+    const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
+    const auto built_by = [&](int threads) {
+        const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 8);
+        tbb::task_arena arena(threads);
+        return arena.execute([&] { return BodyTree(placed).fingerprint(); });
+    };
+    const std::uint64_t serial = built_by(1);
+    for (const int threads : {2, 3, 8})
+        for (int i = 0; i < 5; ++i) EXPECT_EQ(built_by(threads), serial) << threads;
+    // Another scene has another fingerprint: it can fail.
+    scene.bodies.position[17][2] += 1;
+    EXPECT_NE(BodyTree(place_bodies(scene.picture(), Vec4::Zero())).fingerprint(), serial);
+}
+
+}  // namespace
+}  // namespace tesserae::render
