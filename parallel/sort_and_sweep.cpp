@@ -24,6 +24,10 @@ constexpr double kPadOfRadius = 1e-12, kPadOfPlace = 1e-13;
 /// rounding. Wider cells hold more bodies that do not meet.
 constexpr double kCellWidth = 1.01;
 
+/// Largest extent of the level of most bodies, in mean extents: sizes of 1 to 1.7 share it, and the
+/// few that are larger do not make its cells wide.
+constexpr double kUsual = 1.4;
+
 constexpr int kBits = 20;
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 /// Coordinates of bodies, so that those beside them fit in too.
@@ -82,8 +86,9 @@ void SortAndSweep::choose_axes(const std::vector<Bounds>& bounds) {
 
 void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
     levels_.clear();
-    largest_ = 0;
-    for (BodyId id : bounded_) largest_ = std::max(largest_, 2 * padded(bounds[id]));
+    double sum = 0;
+    for (BodyId id : bounded_) sum += 2 * padded(bounds[id]);
+    usual_ = kUsual * sum / static_cast<double>(bounded_.size());
     for (BodyId id : bounded_) {
         const double extent = 2 * padded(bounds[id]);
         const int exponent = exponent_of(extent);
@@ -102,8 +107,7 @@ void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
     }
 }
 
-/// Counted from the largest, so that sizes that differ by less than a factor of two share a level.
-int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(largest_ / extent); }
+int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(usual_ / extent); }
 
 /// The first level for bodies of this extent or larger ones.
 std::size_t SortAndSweep::level_of(double extent) const {
