@@ -37,6 +37,12 @@ std::uint64_t cell_of(std::uint64_t level, const std::uint64_t (&at)[3]) {
     return ((level << kBits | at[0]) << kBits | at[1]) << kBits | at[2];
 }
 
+/// Whether the cell also holds what lies beyond it.
+bool is_last(std::uint64_t cell) {
+    return (cell & kMask) == kLast || (cell >> kBits & kMask) == kLast ||
+           (cell >> (2 * kBits) & kMask) == kLast;
+}
+
 double padded(const Bounds& bounds) {
     return bounds.radius * (1 + kPadOfRadius) + kPadOfPlace * bounds.centre.cwiseAbs().maxCoeff();
 }
@@ -185,13 +191,19 @@ void SortAndSweep::sweep(Range items, std::vector<BodyPair>& pairs) const {
                 add_if_overlapping(items_[i], items_[j], pairs);
 
         const std::size_t own = cells_[c].cell >> (3 * kBits);
-        const auto meet_all = [&](const Box& box, std::size_t first, std::size_t level) {
+        const auto meet_all = [&](Range those, const Box& box, std::size_t first,
+                                  std::size_t level) {
             for_each_cell(box, first, levels_[level + 1].first,
-                          [&](Range others) { meet(part, others, levels_[level].cell, pairs); });
+                          [&](Range others) { meet(those, others, levels_[level].cell, pairs); });
         };
-        meet_all(beside(cells_[c].cell), c + 1, own);
+        meet_all(part, beside(cells_[c].cell), c + 1, own);
+        // What shares a last cell may be far apart and reach very many cells of a coarser level.
+        const std::size_t at_once = is_last(cells_[c].cell) ? 1 : part.end - part.begin;
         for (std::size_t level = own + 1; level + 1 < levels_.size(); ++level)
-            meet_all(reached(part, levels_[level]), levels_[level].first, level);
+            for (std::size_t i = part.begin; i < part.end; i += at_once) {
+                const Range those{i, i + at_once};
+                meet_all(those, reached(those, levels_[level]), levels_[level].first, level);
+            }
         begin = part.end;
     }
 }
