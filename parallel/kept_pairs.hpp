@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "parallel/sort_and_sweep.hpp"
 
 namespace tesserae::parallel {

@@ -24,6 +24,10 @@ constexpr double kPadOfRadius = 1e-12, kPadOfPlace = 1e-13;
 /// rounding. Wider cells hold more bodies that do not meet.
 constexpr double kCellWidth = 1.01;
 
+/// Largest extent of the level of most bodies, in mean extents: sizes of 1 to 1.7 share it, and the
+/// few that are larger do not make its cells wide.
+constexpr double kUsual = 1.4;
+
 constexpr int kBits = 20;
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 /// Coordinates of bodies, so that those beside them fit in too.
@@ -31,6 +35,12 @@ constexpr std::uint64_t kFirst = 1, kLast = kMask - 1;
 
 std::uint64_t cell_of(std::uint64_t level, const std::uint64_t (&at)[3]) {
     return ((level << kBits | at[0]) << kBits | at[1]) << kBits | at[2];
+}
+
+/// Whether the cell also holds what lies beyond it.
+bool is_last(std::uint64_t cell) {
+    return (cell & kMask) == kLast || (cell >> kBits & kMask) == kLast ||
+           (cell >> (2 * kBits) & kMask) == kLast;
 }
 
 double padded(const Bounds& bounds) {
@@ -82,8 +92,9 @@ void SortAndSweep::choose_axes(const std::vector<Bounds>& bounds) {
 
 void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
     levels_.clear();
-    largest_ = 0;
-    for (BodyId id : bounded_) largest_ = std::max(largest_, 2 * padded(bounds[id]));
+    double sum = 0;
+    for (BodyId id : bounded_) sum += 2 * padded(bounds[id]);
+    usual_ = kUsual * sum / static_cast<double>(bounded_.size());
     for (BodyId id : bounded_) {
         const double extent = 2 * padded(bounds[id]);
         const int exponent = exponent_of(extent);
@@ -102,8 +113,7 @@ void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
     }
 }
 
-/// Counted from the largest, so that sizes that differ by less than a factor of two share a level.
-int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(largest_ / extent); }
+int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(usual_ / extent); }
 
 /// The first level for bodies of this extent or larger ones.
 std::size_t SortAndSweep::level_of(double extent) const {
@@ -181,13 +191,19 @@ void SortAndSweep::sweep(Range items, std::vector<BodyPair>& pairs) const {
                 add_if_overlapping(items_[i], items_[j], pairs);
 
         const std::size_t own = cells_[c].cell >> (3 * kBits);
-        const auto meet_all = [&](const Box& box, std::size_t first, std::size_t level) {
+        const auto meet_all = [&](Range those, const Box& box, std::size_t first,
+                                  std::size_t level) {
             for_each_cell(box, first, levels_[level + 1].first,
-                          [&](Range others) { meet(part, others, levels_[level].cell, pairs); });
+                          [&](Range others) { meet(those, others, levels_[level].cell, pairs); });
         };
-        meet_all(beside(cells_[c].cell), c + 1, own);
+        meet_all(part, beside(cells_[c].cell), c + 1, own);
+        // What shares a last cell may be far apart and reach very many cells of a coarser level.
+        const std::size_t at_once = is_last(cells_[c].cell) ? 1 : part.end - part.begin;
         for (std::size_t level = own + 1; level + 1 < levels_.size(); ++level)
-            meet_all(reached(part, levels_[level]), levels_[level].first, level);
+            for (std::size_t i = part.begin; i < part.end; i += at_once) {
+                const Range those{i, i + at_once};
+                meet_all(those, reached(those, levels_[level]), levels_[level].first, level);
+            }
         begin = part.end;
     }
 }

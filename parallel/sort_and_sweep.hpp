@@ -82,7 +82,7 @@ class SortAndSweep {
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
     Vec4 origin_;                 ///< least coordinates of all centres [m]
-    double largest_ = 0;          ///< extent of all bodies [m]
+    double usual_ = 0;            ///< levels are counted from this extent [m]
     std::vector<Level> levels_;   ///< ascending, and an end
     std::vector<Entry> entries_;  ///< ascending by (cell, lower, id)
     std::vector<Item> items_;     ///< in the order of entries_

@@ -16,18 +16,21 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
     std::vector<BodyId>& lowest = step.lowest_of_island;
     lowest.assign(step.islands.size(), kAwake);
     for (std::size_t island = 0; island < lowest.size(); ++island) {
-        bool rests = true;
-        for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
-             ++i) {
-            const Contact& contact = step.contacts[step.islands.contacts[i]];
-            for (const BodyId id : {contact.a, contact.b}) {
-                rests = rests && !is_driven(simulation, id);
-                if (!simulation.type_of(id).movable) continue;
-                rests = rests && simulation.memory.still[id] >= kTimeToSleep;
-                lowest[island] = std::min(lowest[island], id);
-            }
-        }
-        if (!rests) lowest[island] = kAwake;
+        BodyId least = kAwake;
+        const auto rests = [&](BodyId id) {
+            if (is_driven(simulation, id)) return false;
+            if (!simulation.type_of(id).movable) return true;
+            least = std::min(least, id);
+            return simulation.memory.still[id] >= kTimeToSleep;
+        };
+        // Most islands that move show it soon.
+        const std::uint32_t* const first = step.islands.contacts.data();
+        const Range places = step.islands.places(island);
+        if (std::all_of(first + places.begin, first + places.end, [&](std::uint32_t place) {
+                const Contact& contact = step.contacts[place];
+                return rests(contact.a) && rests(contact.b);
+            }))
+            lowest[island] = least;
     }
 }
 
