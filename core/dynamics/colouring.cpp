@@ -31,6 +31,17 @@ std::uint32_t run_length(std::span<const Contact> contacts) {
 
 }  // namespace
 
+bool fit_floats(const Simulation& simulation) {
+    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+    for (const TypeProperties& type : simulation.types) {
+        if (!type.movable) continue;
+        if (!(type.radius > 1e-9 && type.radius < 1e9)) return false;
+        const int exponent = std::ilogb(type.mass);
+        least = std::min(least, exponent), most = std::max(most, exponent);
+    }
+    return most - least <= 60 || most < least;
+}
+
 void Colouring::begin(const Simulation& simulation, StepData& step) {
     ColouredIslands& wide = step.wide;
     const auto any = [&](const auto& is) {
@@ -114,7 +125,8 @@ void Colouring::find_pairs(const Simulation& simulation, StepData& step, std::si
         pair.a = place_of(simulation, step, c.a);
         pair.b = place_of(simulation, step, c.b);
         const std::uint32_t points = run_length(all.subspan(contact));
-        const bool round = is_round(simulation.type_of(c.a)) && is_round(simulation.type_of(c.b));
+        const bool round =
+            points == 1 && is_round(simulation.type_of(c.a)) && is_round(simulation.type_of(c.b));
         pair.points = static_cast<std::uint8_t>(points);
         used_.resize(step.wide.bodies.size(), 0);
         const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;

@@ -20,11 +20,12 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
+    const bool fits = fit_floats(simulation);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const Range places = islands.places(island);
         const auto size = static_cast<std::uint32_t>(places.end - places.begin);
-        if (size >= coloured_from_) {
+        if (fits && size >= coloured_from_) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {

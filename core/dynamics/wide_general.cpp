@@ -234,8 +234,9 @@ template <bool kFriction, bool kUneven, class F>
         LaneVec4<F> tangent_change{};
         if constexpr (kFriction) {
             GeneralFriction& friction = wide.general_friction[k];
-            const LaneVec4<F> slip =
+            LaneVec4<F> slip =
                 (v + load(lane, friction.slip)) + change * load(lane, friction.normal_response);
+            slip[3] = F{};  // that along the normal
             const LaneVec4<F> old = load(lane, friction.impulse);
             const LaneVec4<F> tangent =
                 friction_impulse<F>(lane, friction, old, slip, mu * normal_impulse);
@@ -312,6 +313,7 @@ void keep_general(const WideStage& stage, BatchRange batches) {
             for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
                 ContactImpulse& impulse = stage.step.impulses[batch.contact[k] + p];
                 impulse.normal = stage.mass_unit * wide.rows[batch.row + p].along.impulse.lane[k];
+                impulse.tangent.setZero();
                 if (!wide.friction) continue;
                 Vec4 tangent = Vec4::Zero();
                 for (int axis = 0; axis < 3; ++axis)

@@ -142,6 +142,7 @@ void keep_round(const WideStage& stage, BatchRange batches) {
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
             ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];
             impulse.normal = stage.mass_unit * wide.round_rows[i].along.impulse.lane[k];
+            impulse.tangent.setZero();
             if (!wide.friction) continue;
             for (int axis = 0; axis < 4; ++axis)
                 impulse.tangent[axis] =

@@ -92,6 +92,27 @@ TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     }
 }
 
+/// Boxes, capsules and spheres that overlap a little, and a large sphere that touches more of them
+/// than there are colours: one island of pairs with one to eight points, some of them left over.
+TEST(LargeIsland, OfAllShapesHasTheBitsOfTheSerialWorld) {
+    Bodies bodies = mixed_heap(6 * 6 * 6 * 4, 6);
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        const Shape& shape = bodies.type_of(id).shape;
+        if (!is_bounded(shape)) continue;
+        bodies.position[id] *= 0.4;
+    }
+    add(bodies, sphere_type(2, 100, 0.5), {0, 1.5, 0, 0});
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
+        PhysicsSettings settings = soft();
+        settings.solver = solver;
+        settings.substeps = 2;
+        World serial(bodies, settings);
+        for (int i = 0; i < 2; ++i) serial.step(1.0 / 80);
+        EXPECT_GT(serial.memory().impulses.size(), 2 * kColouredFrom);
+        expect_serial_bits(bodies, settings, 2, serial, {1, 2, 3, 4, 7, 16});
+    }
+}
+
 /// Stacks of two boxes fall asleep, and spheres thrown along w wake some of them.
 TEST(SleepingStacks, HaveTheBitsOfTheSerialWorld) {
     Bodies bodies;
