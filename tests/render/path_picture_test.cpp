@@ -129,5 +129,46 @@ TEST(Picture, OfDirectLightIsTheSameFromBothIntegratorsOutsidePenumbrae) {
     EXPECT_GT(shaded, 100);
 }
 
+TEST(Picture, OfASceneProlongedAlongWHasTheShadowsOfThreeDimensions) {
+    // A box and a floor without end along w, a sun without a part along w: the slice is a 3D scene,
+    // whose shadow a 3D ray decides, slab by slab.
+    for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+        TestScene scene;
+        scene.settings.width = 120, scene.settings.height = 80;
+        scene.settings.samples = 1;
+        scene.settings.channels.position = true;
+        scene.settings.integrator = integrator;
+        scene.settings.bounces = 0;
+        scene.add(Hyperplane{Vec4::UnitY(), 0}, Vec4::Zero());
+        scene.add(Hyperbox{{1, 2, 1.5, 1e6}}, {0, 1.2, 0, 0});
+        Sun sun;
+        sun.direction = Vec4(0.6, -1, -0.4, 0).normalized();
+        sun.angle = 0;
+        scene.lights.suns = {sun};
+        const Image image = picture_of(scene);
+        int dark = 0, light = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) {
+                if (image.id(x, y) != 1) continue;
+                double enter = 0, leave = 1e9;
+                const char* channels[] = {"P.X", "P.Y", "P.Z"};
+                const double centre[] = {0, 1.2, 0}, half[] = {0.5, 1, 0.75};
+                for (int k = 0; k < 3; ++k) {
+                    const double p = image.at(channels[k], x, y) - centre[k];
+                    const double d = -sun.direction[k];
+                    enter = std::max(enter, (-std::copysign(half[k], d) - p) / d);
+                    leave = std::min(leave, (std::copysign(half[k], d) - p) / d);
+                }
+                // Positions are floats: leave out rays that graze an edge.
+                if (std::abs(enter - leave) < 1e-4) continue;
+                const bool is_dark = enter < leave;
+                EXPECT_EQ(image.at("R", x, y) == 0, is_dark) << x << ", " << y;
+                (is_dark ? dark : light) += 1;
+            }
+        EXPECT_GT(dark, 50);
+        EXPECT_GT(light, 1000);
+    }
+}
+
 }  // namespace
 }  // namespace tesserae::render

@@ -89,6 +89,34 @@ TEST(Path, GlassKeepsTheFieldInsideAtTheCubeOfItsIndex) {
     expect_near(mean_radiance(TracedScene(scene), Vec4::UnitZ(), 20000), once, 0.01, "black");
 }
 
+TEST(Path, MagnifiedLightIsDimmedByItsVolume) {
+    // A glowing black ball in the middle of a glass ball looks larger than it is. The power that
+    // leaves it is the same, so its radiance falls by the cube of the magnification, which is found
+    // here by moving the ray until it misses: three directions are magnified in four dimensions.
+    TestScene scene = path_scene(1);
+    scene.materials.resize(2);
+    scene.materials[0].kind = MaterialKind::kGlass;
+    scene.materials[0].albedo = Color::Ones();
+    scene.materials[0].ior = 1.7;
+    scene.materials[1].albedo = Color::Zero();
+    scene.materials[1].emission = Color::Ones();
+    const auto radiance_at = [&](double h) {
+        TestScene moved = scene;
+        moved.add(Hypersphere{1}, Vec4(h, 0, 4, 0));
+        moved.add(Hypersphere{0.3}, Vec4(h, 0, 4, 0), {}, 1);
+        return mean_radiance(TracedScene(moved), Vec4::UnitZ(), 4000);
+    };
+    double inside = 0, outside = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        (radiance_at(middle).sum[0] > 0 ? inside : outside) = middle;
+    }
+    const double magnification = inside / 0.3;
+    EXPECT_NEAR(magnification, 1.7, 1e-9);
+    const double r = std::pow(0.7 / 2.7, 2);
+    expect_near(radiance_at(0), (1 - r) / std::pow(magnification, 3), 0.01, "axis");
+}
+
 TEST(Path, LightThroughAGlassBallOnItsAxis) {
     // Of a ray through the centre R comes back at each surface: (1 - R)^2 (1 + R^2 + R^4 + ...) =
     // (1 - R)/(1 + R) goes through, and the indices' cubes cancel.
