@@ -5,14 +5,15 @@
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
 #   bash bench/run.sh extremes     stiff and extreme scenes
+#   bash bench/run.sh light        error of the traced light against samples, a minute
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed extremes bullet peers)
+parts=(accuracy speed extremes light bullet peers)
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | extremes | bullet | peers) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | extremes | bullet | peers]" >&2
+    case $1 in accuracy | speed | extremes | light | bullet | peers) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | extremes | light | bullet | peers]" >&2
         exit 2
         ;;
     esac
@@ -63,6 +64,12 @@ extremes() {
     "$folder/bench/extremes" long >"$raw/extremes.csv"
     head_of extremes "$1"
     cat "$raw/head.txt" "$raw/extremes.csv" >"$results/extremes.csv"
+}
+
+light() {
+    "$folder/bench/light_error" >"$raw/light_error.csv"
+    head_of light "$1"
+    cat "$raw/head.txt" "$raw/light_error.csv" >"$results/light_error.csv"
 }
 
 bullet() {

@@ -13,6 +13,9 @@ namespace {
 /// The search for the least f/t ends when it is known to this part of the sun's sine: the visible
 /// part is then right to 1e-6.
 constexpr double kRimTolerance = 1e-6;
+/// A sun smaller than this [rad] is hard: nobody sees the difference, and the radiance of its disc,
+/// which grows with the cube, would leave the range of double.
+constexpr double kHard = 1e-9;
 /// Usually four or five steps do; the Illinois rule needs the more, the flatter the minimum.
 constexpr int kMaxRimSteps = 100;
 
@@ -134,7 +137,8 @@ double rim_sine_of(const Hypersphere&, const Vec4& origin, const Vec4& direction
 }  // namespace
 
 SunDisc sun_disc(const Sun& sun) {
-    const double angle = sun.angle * (std::numbers::pi / 180);
+    double angle = sun.angle * (std::numbers::pi / 180);
+    if (angle < kHard) angle = 0;
     SunDisc disc = {
         {-sun.direction, angle, {std::sin(angle), std::cos(angle)}}, sun.irradiance, Color::Zero()};
     if (angle > 0) disc.radiance = sun.irradiance / cap_irradiance(angle, std::numbers::pi / 2);

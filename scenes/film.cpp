@@ -98,6 +98,18 @@ void require_folder_of(const Scene& scene, const fs::path& folder, bool overwrit
             folder.string(), first_difference(other, scene.effective)));
 }
 
+std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame) {
+    if (stats.invalid_samples == 0) return {};
+    const render::SampleNumber& s = stats.first_invalid;
+    return fmt::format(
+        "{}: frame {}: {} samples were infinite or no number and count as black; the first is "
+        "sample "
+        "{} of pixel {},{}; to render it alone: tesserae render {} --frames {} --crop {},{},{},{} "
+        "-o DIR",
+        scene.file.string(), frame, stats.invalid_samples, s.sample, s.x, s.y, scene.file.string(),
+        frame, s.x, s.y, s.x + 1, s.y + 1);
+}
+
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
                 const fs::path& folder, bool overwrite, bool quiet) {
     const auto begin = std::chrono::steady_clock::now();
@@ -139,8 +151,11 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             render::copy_frame(shown.files, picture, info, files);
             ++report.copied;
         } else {
-            report.stats +=
+            const render::FrameStats stats =
                 render::render_frame(picture, info, files.exr, files.preview, stop_requested());
+            const std::string invalid = invalid_samples_text(stats, scene, info.frame);
+            if (!invalid.empty()) fmt::print(stderr, "tesserae: {}\n", invalid);
+            report.stats += stats;
             ++report.rendered;
             shown = {bodies.position, bodies.rotor, camera, files};
         }

@@ -27,6 +27,10 @@ void require_folder_of(const Scene& scene, const std::filesystem::path& folder, 
 /// @throws RunError   with the path and the system's reason
 void create_folder(const std::filesystem::path& folder);
 
+/// Which samples of a frame were left out as infinite or no number, and the command that renders
+/// the pixel of the lowest again. Empty if there are none.
+std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame);
+
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
 /// the caller's parallel::Threads.

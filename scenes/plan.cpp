@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "render/frame.hpp"
+#include "render/material/bsdf.hpp"
 #include "scenes/memory.hpp"
 #include "scenes/timeline.hpp"
 
@@ -118,17 +119,13 @@ void decide_light(const Scene& scene, std::uint64_t visible, Plan& plan) {
     // Diffuse and rough surfaces end a ray of the direct picture.
     const auto reflects = count_if_type(scene.bodies, [&](auto t) {
         const render::Appearance& a = scene.appearance[t];
-        const render::MaterialKind kind = scene.materials[a.material].kind;
-        return a.visible &&
-               (kind == render::MaterialKind::kMirror || kind == render::MaterialKind::kGlass);
+        return a.visible && render::is_specular(scene.materials[a.material]);
     });
-    const bool follows = reflects > 0 && scene.render.bounces > 0;
-    plan.decisions.push_back(
-        {"reflected and refracted rays", follows,
-         follows ? fmt::format("{} bodies of mirror or glass, {} bounce(s)", reflects,
-                               scene.render.bounces)
-                 : (reflects > 0 ? "bounces = 0: mirrors and glass show lights and sky only"
-                                 : "nothing is a mirror or glass")});
+    plan.decisions.push_back({"reflected and refracted rays", reflects > 0,
+                              reflects > 0
+                                  ? fmt::format("{} bodies of mirror or glass, {} bounce(s)",
+                                                reflects, scene.render.bounces)
+                                  : "nothing is a mirror or glass"});
 }
 
 void decide_picture(const Scene& scene, Plan& plan) {

@@ -14,8 +14,7 @@ struct LightAt {
 };
 
 /// The lights of a frame, positions relative to the camera. Dark ones are left out.
-class LightSet {
-  public:
+struct LightSet {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
     LightSet(const Lights& lights, const Vec4& camera_origin);

@@ -313,7 +313,7 @@ TEST(Overrides, ErrorsNameTheEntry) {
         {"body.floor=1", "expected body.NAME.KEY=VALUE"},
         {"body.flor.friction=1", "no body is called \"flor\"; did you mean \"floor\"?"},
         {"lattice.rian.jitter=1", "no lattice is called \"rian\"; did you mean \"rain\"?"},
-        {"light.3.strength=1", "no light is called \"3\""},
+        {"light.9.strength=1", "no light is called \"9\""},
         {"body.floor.position=[0, 0, 0, 0]", "never moves"},
         {"lattice.rain.size=[1, 1, 1]", "has 3 values"},
         {"render.intersector=analytic", "a string needs quotes"},

@@ -1,0 +1,408 @@
+#include "render/path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "render/material/dielectric.hpp"
+#include "render/material/microfacet.hpp"
+#include "tests/render/traced_scene.hpp"
+
+namespace tesserae::render {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TestScene path_scene(int bounces) {
+    TestScene scene;
+    scene.settings.integrator = Integrator::kPath;
+    scene.settings.bounces = bounces;
+    scene.settings.intersector = Intersector::kAnalytic;
+    return scene;
+}
+
+/// Within 5 deviations, and those small enough to mean something.
+void expect_near(const Mean& found, double expected, double most_sigma, const std::string& what) {
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_LE(found.sigma()[c], most_sigma) << what;
+        EXPECT_NEAR(found.mean()[c], expected, 5 * found.sigma()[c] + 1e-12) << what;
+    }
+}
+
+TEST(Path, LoneConvexBodyInAWhiteFurnaceShowsItsAlbedo) {
+    // A diffuse convex body sees nothing of itself: every sample is exact, whatever the bounces.
+    Random random(521);
+    for (int i = 0; i < 60; ++i) {
+        TestScene scene = path_scene(i % 4);
+        scene.materials[0].albedo = {0.25, 0.5, 1};
+        scene.lights.sky = Color::Ones();
+        const Vec4 centre = 4 * random_direction(random);
+        scene.add(random_shape(random, i % 3, 1), centre, random_rotor(random));
+        const TracedScene traced(scene);
+        const Color found = traced.radiance(centre.normalized(), Sampler(i, 0, 0));
+        EXPECT_LT((found - scene.materials[0].albedo).abs().maxCoeff(), 1e-12);
+    }
+}
+
+/// Bodies of every shape and kind but rough, one in another, all of albedo 1.
+TestScene white_heap(Random& random, int bodies) {
+    TestScene scene = path_scene(100'000);
+    scene.lights.sky = Color::Ones();
+    scene.materials.resize(4);
+    for (Material& m : scene.materials) m.albedo = Color::Ones();
+    scene.materials[1].kind = MaterialKind::kMirror;
+    scene.materials[2].kind = scene.materials[3].kind = MaterialKind::kGlass;
+    scene.materials[3].ior = 1.2;
+    for (int i = 0; i < bodies; ++i)
+        scene.add(random_shape(random, static_cast<int>(random() % 3), 0.8),
+                  4 * Vec4::UnitZ() + random_vector(random, 0.8), random_rotor(random),
+                  static_cast<std::uint32_t>(random() % 4));
+    return scene;
+}
+
+TEST(Path, HeapsOfWhiteBodiesInAWhiteFurnaceCannotBeSeen) {
+    // Nothing absorbs, so each ray brings back 1: mirrors, glass in glass, glass that stands in
+    // diffuse bodies. Only roulette makes noise.
+    Random random(522);
+    for (int i = 0; i < 40; ++i) {
+        const TracedScene traced(white_heap(random, 1 + i % 6));
+        const Vec4 direction = (4 * Vec4::UnitZ() + random_vector(random, 0.6)).normalized();
+        expect_near(mean_radiance(traced, direction, 2000), 1, 0.05, std::to_string(i));
+    }
+}
+
+TEST(Path, GlassKeepsTheFieldInsideAtTheCubeOfItsIndex) {
+    // A ray that goes in shows, at the black ball in the glass, nothing; at a white one all: with
+    // radiance n^3 inside, seen from outside as 1.
+    TestScene scene = path_scene(100'000);
+    scene.lights.sky = Color::Ones();
+    scene.materials.resize(2);
+    scene.materials[0].albedo = scene.materials[1].albedo = Color::Ones();
+    scene.materials[0].kind = MaterialKind::kGlass;
+    scene.add(Hypersphere{1}, 4 * Vec4::UnitZ());
+    scene.add(Hypersphere{0.6}, 4 * Vec4::UnitZ(), {}, 1);
+    expect_near(mean_radiance(TracedScene(scene), Vec4(0.05, 0, 1, 0).normalized(), 20000), 1, 0.01,
+                "white");
+    scene.materials[1].albedo = Color::Zero();
+    const double once = std::pow(0.2, 2);
+    expect_near(mean_radiance(TracedScene(scene), Vec4::UnitZ(), 20000), once, 0.01, "black");
+}
+
+TEST(Path, MagnifiedLightIsDimmedByItsVolume) {
+    // A glowing black ball in the middle of a glass ball looks larger than it is. The power that
+    // leaves it is the same, so its radiance falls by the cube of the magnification, which is found
+    // here by moving the ray until it misses: three directions are magnified in four dimensions.
+    TestScene scene = path_scene(1);
+    scene.materials.resize(2);
+    scene.materials[0].kind = MaterialKind::kGlass;
+    scene.materials[0].albedo = Color::Ones();
+    scene.materials[0].ior = 1.7;
+    scene.materials[1].albedo = Color::Zero();
+    scene.materials[1].emission = Color::Ones();
+    const auto radiance_at = [&](double h) {
+        TestScene moved = scene;
+        moved.add(Hypersphere{1}, Vec4(h, 0, 4, 0));
+        moved.add(Hypersphere{0.3}, Vec4(h, 0, 4, 0), {}, 1);
+        return mean_radiance(TracedScene(moved), Vec4::UnitZ(), 4000);
+    };
+    double inside = 0, outside = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (inside + outside);
+        (radiance_at(middle).sum[0] > 0 ? inside : outside) = middle;
+    }
+    const double magnification = inside / 0.3;
+    EXPECT_NEAR(magnification, 1.7, 1e-9);
+    const double r = std::pow(0.7 / 2.7, 2);
+    expect_near(radiance_at(0), (1 - r) / std::pow(magnification, 3), 0.01, "axis");
+}
+
+TEST(Path, LightThroughAGlassBallOnItsAxis) {
+    // Of a ray through the centre R comes back at each surface: (1 - R)^2 (1 + R^2 + R^4 + ...) =
+    // (1 - R)/(1 + R) goes through, and the indices' cubes cancel.
+    for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+        TestScene scene = path_scene(100'000);
+        scene.settings.integrator = integrator;
+        scene.materials[0].kind = MaterialKind::kGlass;
+        scene.materials[0].albedo = Color::Ones();
+        scene.materials[0].ior = 2;
+        scene.add(Hypersphere{1}, 4 * Vec4::UnitZ());
+        scene.lights.spheres = {{9 * Vec4::UnitZ(), 0.5, Color::Constant(3)}};
+        const double r = std::pow(1.0 / 3, 2);
+        expect_near(mean_radiance(TracedScene(scene), Vec4::UnitZ(), 20000), 3 * (1 - r) / (1 + r),
+                    0.02, "axis");
+    }
+}
+
+TEST(Path, GlassBallBendsByTwiceTheDifferenceOfAngles) {
+    // A ray at height h above the axis, in a plane that has a part along w: it leaves turned by
+    // 2 (asin(h) - asin(h/n)) toward the axis, with (1 - R)^2 of the light. A small light stands
+    // there; rays that are reflected inside leave elsewhere.
+    for (double h : {0.2, 0.5, 0.8}) {
+        TestScene scene = path_scene(1000);
+        scene.materials[0].kind = MaterialKind::kGlass;
+        scene.materials[0].albedo = Color::Ones();
+        const Vec4 up = Vec4(0, 0.6, 0, 0.8);
+        scene.add(Hypersphere{1}, 4 * Vec4::UnitZ() - h * up);
+        const double in = std::asin(h), inside = std::asin(h / 1.5), turn = 2 * (in - inside);
+        // Where it enters seen from the centre: at angle pi - in from the axis; where it leaves:
+        // on by pi - 2 inside.
+        const double leave = (kPi - in) - (kPi - 2 * inside);
+        const Vec4 exit =
+            scene.bodies.position[0] + std::cos(leave) * Vec4::UnitZ() + std::sin(leave) * up;
+        const Vec4 way = std::cos(turn) * Vec4::UnitZ() - std::sin(turn) * up;
+        scene.lights.spheres = {{exit + 6 * way, 0.001, Color::Ones()}};
+        const double r = fresnel(std::cos(in), 1 / 1.5);
+        expect_near(mean_radiance(TracedScene(scene), Vec4::UnitZ(), 10000), (1 - r) * (1 - r),
+                    0.01, std::to_string(h));
+    }
+}
+
+TEST(Path, OfOverlappingGlassesTheLowestNumberRules) {
+    // On the axis of all bodies, with R of one surface: slabs in series send through
+    // 1/(1 + sum of R/(1 - R)) (the rays' intensities add up).
+    const auto through = [](std::initializer_list<double> ratios) {
+        double sum = 0;
+        for (double n : ratios) {
+            const double r = std::pow((n - 1) / (n + 1), 2);
+            sum += r / (1 - r);
+        }
+        return 1 / (1 + sum);
+    };
+    const auto found = [](std::initializer_list<std::pair<double, double>> balls, double n0,
+                          double n1) {
+        TestScene scene = path_scene(100'000);
+        scene.materials.resize(2);
+        for (Material& m : scene.materials) m.kind = MaterialKind::kGlass, m.albedo = Color::Ones();
+        scene.materials[0].ior = n0, scene.materials[1].ior = n1;
+        std::uint32_t material = 0;
+        for (const auto& [z, radius] : balls)
+            scene.add(Hypersphere{radius}, z * Vec4::UnitZ(), {}, material++);
+        scene.lights.spheres = {{20 * Vec4::UnitZ(), 0.5, Color::Ones()}};
+        return mean_radiance(TracedScene(scene), Vec4::UnitZ(), 20000);
+    };
+    // Two balls of one glass are one body, whichever comes first.
+    expect_near(found({{4, 1}, {5, 1}}, 2, 2), through({2, 2}), 0.01, "one glass");
+    expect_near(found({{5, 1}, {4, 1}}, 2, 2), through({2, 2}), 0.01, "one glass, turned");
+    // A ball in a ball: seen if its number is lower, else not there.
+    expect_near(found({{4, 0.5}, {4, 1}}, 3, 2), through({2, 1.5, 1.5, 2}), 0.01, "inner rules");
+    expect_near(found({{4, 1}, {4, 0.5}}, 2, 3), through({2, 2}), 0.01, "outer rules");
+    // Overlapping halves: air, 2, 3, air either way.
+    expect_near(found({{4, 1}, {5, 1}}, 2, 3), through({2, 1.5, 3}), 0.01, "first rules");
+    expect_near(found({{5, 1}, {4, 1}}, 3, 2), through({2, 1.5, 3}), 0.01, "second rules");
+}
+
+TEST(Path, RoughBodyInAWhiteFurnaceShowsItsDirectionalAlbedo) {
+    Random random(523);
+    for (double roughness : {0.3, 0.7, 1.0}) {
+        TestScene scene = path_scene(3);
+        scene.materials[0].kind = MaterialKind::kRough;
+        scene.materials[0].roughness = roughness;
+        scene.materials[0].albedo = Color::Constant(0.5);
+        scene.lights.sky = Color::Ones();
+        scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+        const Vec4 direction = Vec4(0.5, -1, 0.3, 0.2).normalized();
+        // The albedo from uniform directions of the hemisphere, area pi^2.
+        const Microfacet facets(roughness);
+        const TangentFrame frame(Vec4::UnitY());
+        Mean albedo;
+        for (int i = 0; i < 400'000; ++i) {
+            Vec4 in = random_direction(random);
+            in[3] = std::abs(in[3]);
+            albedo.add(Color::Constant(0.5 * kPi * kPi * in[3] *
+                                       facets.brdf(frame.to_local(-direction), in)));
+        }
+        const Mean found = mean_radiance(TracedScene(scene), direction, 20000);
+        EXPECT_NEAR(found.mean()[0], albedo.mean()[0],
+                    5 * std::hypot(found.sigma()[0], albedo.sigma()[0]))
+            << roughness;
+        EXPECT_LT(albedo.sigma()[0], 0.01);
+    }
+}
+
+TEST(Path, GlowingCavitySumsItsBounces) {
+    // Inside eight walls of albedo a and emission e every surface shows e (1 + a + a^2 + ...), one
+    // term for what is seen, one for direct light and one for each bounce; exactly, until roulette.
+    for (int bounces : {0, 1, 3, 40}) {
+        TestScene scene = path_scene(bounces);
+        scene.materials[0].albedo = {0.3, 0.6, 0.9};
+        scene.materials[0].emission = Color::Constant(0.5);
+        for (int axis = 0; axis < 4; ++axis)
+            for (int side : {-1, 1})
+                scene.add(Hyperplane{side * Vec4::Unit(axis), -1.0 - axis}, Vec4::Zero());
+        const Mean found =
+            mean_radiance(TracedScene(scene), Vec4(0.3, -0.2, 0.8, 0.4).normalized(), 4000);
+        for (int c = 0; c < 3; ++c) {
+            const double a = scene.materials[0].albedo[c];
+            const double expected = 0.5 * (1 - std::pow(a, bounces + 2)) / (1 - a);
+            EXPECT_NEAR(found.mean()[c], expected, 5 * found.sigma()[c] + 1e-12) << bounces;
+        }
+    }
+}
+
+TEST(Path, DirectLightIsTheClosedForms) {
+    // Every light that a plane sees whole and unshaded, one at a time; sphere lights also half set.
+    Random random(524);
+    for (int i = 0; i < 40; ++i) {
+        TestScene scene = path_scene(0);
+        scene.materials[0].albedo = {0.2, 0.5, 0.9};
+        scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+        Vec4 toward = random_direction(random);
+        toward[1] = std::abs(toward[1]) + 0.3;
+        toward.normalize();
+        const bool is_hard = i % 4 < 2;
+        if (i % 4 == 0) scene.lights.points = {{2 * toward, Color(1, 2, 3)}};
+        if (i % 4 == 1 || i % 4 == 2) {
+            Sun sun;
+            sun.direction = -toward;
+            sun.angle = i % 8 == 1 ? 0 : i % 8 == 5 ? 1e-120 : uniform(random, 0.01, 10);
+            scene.lights.suns = {sun};
+        }
+        if (i % 4 == 3)
+            scene.lights.spheres = {
+                {(i % 8 == 3 ? 2 * toward : Vec4(toward - (1 + 0.7 * toward[1]) * Vec4::UnitY())),
+                 uniform(random, 0.2, 1.2), Color(3, 2, 1)}};
+        const Vec4 direction = Vec4(0.1, -1, 0.1, -0.2).normalized();
+        scene.settings.integrator = Integrator::kDirect;
+        const Color expected = TracedScene(scene).radiance(direction, Sampler(0, 0, 0));
+        scene.settings.integrator = Integrator::kPath;
+        const TracedScene traced(scene);
+        if (traced.lights.first_sphere(Vec4::Zero(), direction, kMiss).sphere != LightSet::kNone)
+            continue;
+        const Mean found = mean_radiance(traced, direction, is_hard ? 2 : 4000);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(found.mean()[c], expected[c], 5 * found.sigma()[c] + 1e-12) << i;
+            EXPECT_LE(found.sigma()[c], 0.03 * expected[c] + 1e-9) << i;
+        }
+    }
+}
+
+/// Another integrator: uniform directions of the hemisphere, no light is chosen, nothing but what
+/// the ray runs into counts, every body is tried.
+Color reference(const TracedScene& t, const Vec4& origin, const Vec4& direction, std::uint32_t on,
+                int scattered, Random& random) {
+    const Hit hit = t.nearest(origin, direction, on);
+    for (const SphereLight& l : t.scene.lights.spheres)
+        if (ray_hit(Hypersphere{l.radius}, origin - l.position, direction) < hit.distance)
+            return l.radiance;
+    if (!hit) {
+        Color light = t.scene.lights.sky;
+        for (const Sun& sun : t.scene.lights.suns) {
+            const double angle = sun.angle * kPi / 180;
+            if (scattered > 0 && -sun.direction.dot(direction) > std::cos(angle))
+                light += sun.irradiance / (4 * kPi / 3 * std::pow(std::sin(angle), 3));
+        }
+        return light;
+    }
+    const Surface s = t.shading.surface(hit, origin, direction);
+    if (scattered > t.scene.settings.bounces) return s.material->emission;
+    Vec4 next = random_direction(random);
+    if (next.dot(s.normal) < 0) next = -next;
+    Color brdf = s.albedo * (3 / (4 * kPi));
+    if (s.material->kind == MaterialKind::kRough) {
+        const TangentFrame frame(s.normal);
+        brdf = s.albedo * Microfacet(s.material->roughness)
+                              .brdf(frame.to_local(-direction), frame.to_local(next));
+    }
+    return s.material->emission + brdf * next.dot(s.normal) * kPi * kPi *
+                                      reference(t, s.point, next, s.body, scattered + 1, random);
+}
+
+TEST(Path, AgreesWithAnIntegratorThatChoosesNoLights) {
+    // 40 rays into a scene with every kind of light that a ray can run into, diffuse and rough
+    // bodies that shade and light each other; the greatest of 120 differences of two means in units
+    // of its deviation stays below 4.5 with probability 0.999.
+    Random random(525);
+    TestScene scene = path_scene(2);
+    scene.materials.resize(3);
+    scene.materials[1].albedo = {0.9, 0.5, 0.2};
+    scene.materials[1].kind = MaterialKind::kRough;
+    scene.materials[1].roughness = 0.7;
+    scene.materials[2].emission = {0.3, 0.1, 0.5};
+    for (int i = 0; i < 8; ++i)
+        scene.add(random_shape(random, i % 3, 0.7), 4 * Vec4::UnitZ() + random_vector(random, 1.2),
+                  random_rotor(random), static_cast<std::uint32_t>(i % 3));
+    scene.add(Hyperplane{Vec4::UnitY(), -1.5}, Vec4::Zero());
+    Sun sun;
+    sun.direction = Vec4(0.4, -1, 0.3, 0.5).normalized();
+    sun.angle = 25;
+    scene.lights.suns = {sun};
+    scene.lights.sky = {0.1, 0.2, 0.3};
+    scene.lights.spheres = {{Vec4(1.5, 1, 2.5, 0.5), 0.6, Color(2, 2, 1)},
+                            {Vec4(-1.5, 0.5, 3, -0.7), 0.5, Color(1, 3, 3)}};
+    const TracedScene traced(scene);
+    double worst = 0, square = 0;
+    int differing = 0;
+    for (int i = 0; i < 40; ++i) {
+        const Vec4 direction = (4 * Vec4::UnitZ() + random_vector(random, 1.5)).normalized();
+        const Mean found = mean_radiance(traced, direction, 3000);
+        Mean expected;
+        for (int k = 0; k < 12000; ++k)
+            expected.add(reference(traced, Vec4::Zero(), direction, RayScene::kNoBody, 0, random));
+        for (int c = 0; c < 3; ++c) {
+            const double sigma = std::hypot(found.sigma()[c], expected.sigma()[c]);
+            const double difference = found.mean()[c] - expected.mean()[c];
+            if (!(sigma > 0)) {
+                EXPECT_NEAR(difference, 0, 1e-12);
+                continue;
+            }
+            ++differing;
+            worst = std::max(worst, std::abs(difference) / sigma);
+            square += difference * difference / (sigma * sigma);
+        }
+    }
+    EXPECT_GT(differing, 60);
+    EXPECT_LT(worst, 4.5);
+    // Their squares have mean 1; the channels of a ray are not independent: a third of the number.
+    EXPECT_NEAR(square / differing, 1, 5 * std::sqrt(2.0 / (differing / 3.0)));
+}
+
+TEST(Path, MirrorsShowWhatStandsBeforeThem) {
+    // A mirror on the floor, 45 degrees: the wall, the sun's disc and a sphere light, in both
+    // pictures; without bounces only the lights.
+    for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+        TestScene scene = path_scene(1);
+        scene.settings.integrator = integrator;
+        scene.materials.resize(2);
+        scene.materials[0].kind = MaterialKind::kMirror;
+        scene.materials[0].albedo = {0.5, 1, 0.25};
+        scene.materials[1].emission = Color::Constant(3);
+        scene.materials[1].albedo = Color::Zero();
+        scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+        const Vec4 direction = Vec4(0, -1, 0, 1).normalized(), up = Vec4(0, 1, 0, 1).normalized();
+        const auto seen = [&] { return TracedScene(scene).radiance(direction, Sampler(0, 0, 0)); };
+        const Color tint = scene.materials[0].albedo;
+
+        scene.lights.sky = Color::Constant(2);
+        EXPECT_LT((seen() - 2 * tint).abs().maxCoeff(), 1e-13);
+        Sun sun;
+        sun.direction = -up;
+        sun.angle = 5;
+        scene.lights.suns = {sun};
+        const double disc = 1 / (4 * kPi / 3 * std::pow(std::sin(5 * kPi / 180), 3));
+        EXPECT_LT((seen() - (2 + disc) * tint).abs().maxCoeff(), 1e-13 * disc);
+        scene.lights.spheres = {{Vec4(0, 2, 0, 4), 0.5, Color::Constant(7)}};
+        EXPECT_LT((seen() - 7 * tint).abs().maxCoeff(), 1e-13);
+        scene.add(Hypersphere{0.5}, {0, 0, 0, 2}, {}, 1);
+        EXPECT_LT((seen() - 3 * tint).abs().maxCoeff(), 1e-13);
+    }
+}
+
+TEST(Path, ViewRaysSeeSphereLightsInFrontOfBodies) {
+    for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+        TestScene scene = path_scene(1);
+        scene.settings.integrator = integrator;
+        scene.add(Hypersphere{1}, {0, 0, 5, 0});
+        scene.lights.spheres = {{Vec4(0, 0, 2, 0), 0.5, Color::Constant(7)},
+                                {Vec4(0, 0, 9, 0), 3, Color::Constant(9)}};
+        EXPECT_EQ(TracedScene(scene).radiance(Vec4::UnitZ(), Sampler(0, 0, 0))[0], 7);
+        scene.lights.spheres[0].position[2] = 7;
+        EXPECT_LT(TracedScene(scene).radiance(Vec4::UnitZ(), Sampler(0, 0, 0))[0], 7);
+        // A hard look past the body.
+        EXPECT_EQ(
+            TracedScene(scene).radiance(Vec4(0, 0.27, 1, 0).normalized(), Sampler(0, 0, 0))[0], 9);
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::render

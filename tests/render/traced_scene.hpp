@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "render/path.hpp"
+#include "tests/render/test_scene.hpp"
+
+namespace tesserae::render {
+
+/// A scene made ready for rays from the world's origin.
+struct TracedScene {
+    TestScene scene;
+    Picture picture;
+    PlacedBodies placed;
+    LightSet lights;
+    Shading shading;
+    LightTransport transport;
+    mutable FrameStats stats;
+
+    explicit TracedScene(const TestScene& s)
+        : scene(s),
+          picture(scene.picture()),
+          placed(place_bodies(picture, Vec4::Zero())),
+          lights(scene.lights, Vec4::Zero()),
+          shading(picture, placed, lights),
+          transport(picture, placed, lights, shading) {}
+    TracedScene(const TracedScene&) = delete;
+
+    /// The nearest body, tried one by one.
+    Hit nearest(const Vec4& origin, const Vec4& direction, std::uint32_t on) const {
+        Hit hit;
+        for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
+            if (b == on) continue;
+            const double t =
+                hit_distance(placed, b, origin, direction, kMiss, scene.settings, stats);
+            if (t < hit.distance) hit = {t, b};
+        }
+        return hit;
+    }
+
+    std::optional<Surface> first(const Vec4& direction) const {
+        const Hit hit = nearest(Vec4::Zero(), direction, RayScene::kNoBody);
+        if (!hit) return std::nullopt;
+        return shading.surface(hit, Vec4::Zero(), direction);
+    }
+
+    Color radiance(const Vec4& direction, const Sampler& sampler) const {
+        return transport.radiance(first(direction), direction, sampler, stats);
+    }
+};
+
+/// Mean and its deviation, a colour channel at a time.
+struct Mean {
+    Color sum = Color::Zero(), square = Color::Zero();
+    int count = 0;
+
+    void add(const Color& c) { sum += c, square += c * c, ++count; }
+    Color mean() const { return sum / count; }
+    Color sigma() const { return ((square / count - mean() * mean()).max(0) / (count - 1)).sqrt(); }
+};
+
+/// The mean of independent samples along one ray: the first sample of that many pixels, since a
+/// pixel's own samples are stratified.
+inline Mean mean_radiance(const TracedScene& traced, const Vec4& direction, int count) {
+    Mean mean;
+    for (int i = 0; i < count; ++i)
+        mean.add(traced.radiance(direction, Sampler(i % 1024, i / 1024, 0)));
+    return mean;
+}
+
+}  // namespace tesserae::render

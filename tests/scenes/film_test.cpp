@@ -1,0 +1,26 @@
+#include "scenes/film.hpp"
+
+#include <gtest/gtest.h>
+
+namespace tesserae::scenes {
+namespace {
+
+TEST(InvalidSamples, AreReportedWithACommandThatRendersTheLowestAgain) {
+    Scene scene;
+    scene.file = "dir/drop.toml";
+    render::FrameStats stats;
+    EXPECT_EQ(invalid_samples_text(stats, scene, 7), "");
+    stats.count_invalid({5, 9, 3}, 1);
+    stats.count_invalid({5, 8, 4}, 1);
+    render::FrameStats other;
+    other.count_invalid({6, 0, 0}, 2);
+    stats += other;
+    EXPECT_EQ(
+        invalid_samples_text(stats, scene, 7),
+        "dir/drop.toml: frame 7: 4 samples were infinite or no number and count as black; the "
+        "first is sample 4 of pixel 8,5; to render it alone: tesserae render dir/drop.toml "
+        "--frames 7 --crop 8,5,9,6 -o DIR");
+}
+
+}  // namespace
+}  // namespace tesserae::scenes
