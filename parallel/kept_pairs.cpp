@@ -12,9 +12,9 @@ constexpr std::size_t kBodyGrain = 512, kPairGrain = 2048;
 
 /// A ball is larger than the body's bounds by this part of the body's radius, and by the way that
 /// it goes in so many steps, but by no more than its radius. More, and a search and each step look
-/// at more candidates, by the fourth power of the ball; less, and searches come more often. In a
-/// pile of 10^5 spheres that crash they last 5 steps and in one at rest 20 and more; half or double
-/// of each costs up to a half more.
+/// at more candidates, by the fourth power of the ball; less, and searches come more often. With
+/// these a search lasts 5 steps where a pile of 10^5 spheres falls together, 20 while it settles
+/// and for ever once it rests.
 constexpr double kPart = 0.1, kSteps = 16;
 
 }  // namespace
