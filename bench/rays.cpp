@@ -12,7 +12,7 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "parallel/threads.hpp"
-#include "render/intersect.hpp"
+#include "render/film_list.hpp"
 #include "render/ray_scene.hpp"
 #include "render/shadow.hpp"
 #include "render/tile_image.hpp"
@@ -93,20 +93,26 @@ void measure(int count, Intersector intersector) {
     const FrameScene scene(picture, true);
 
     std::vector<Surface> lit;
+    FilmList list;
     FrameStats view_stats;
     const double view_time = time_of([&] {
         lit.clear();
         view_stats = {};
         TileSource source(scene.slice, {0, 0, kSide, kSide}, 32);
         while (const auto tile = source.next()) {
-            const auto list = candidates_of(scene.slice, tile->candidates);
-            for (int y = tile->y0; y < tile->y1; ++y)
-                for (int x = tile->x0; x < tile->x1; ++x) {
-                    const Vec3 view = scene.camera.ray_direction({x + 0.5, y + 0.5});
-                    const Vec4 world = scene.camera.to_world({view.x(), view.y(), view.z(), 0});
-                    const Hit hit =
-                        nearest_hit(scene.placed, list, view, world, picture.settings, view_stats);
-                    if (hit) lit.push_back(scene.shading.surface(hit, world));
+            for (int y0 = tile->y0; y0 < tile->y1; y0 += FilmList::kSide)
+                for (int x0 = tile->x0; x0 < tile->x1; x0 += FilmList::kSide) {
+                    const Crop window = {x0, y0, x0 + FilmList::kSide, y0 + FilmList::kSide};
+                    list.fill(scene.slice, tile->candidates, window);
+                    for (int y = window.y0; y < window.y1; ++y)
+                        for (int x = window.x0; x < window.x1; ++x) {
+                            const Vec3 view = scene.camera.ray_direction({x + 0.5, y + 0.5});
+                            const Vec4 world =
+                                scene.camera.to_world({view.x(), view.y(), view.z(), 0});
+                            const Hit hit = list.nearest(scene.placed, view, world,
+                                                         picture.settings, view_stats);
+                            if (hit) lit.push_back(scene.shading.surface(hit, world));
+                        }
                 }
         }
     });

@@ -88,8 +88,8 @@ class BodyTree {
     /// Which boxes the ray, or cone, meets within the limit, and where it enters them.
     template <bool kCone>
     static std::uint32_t boxes_met(const Boxes& boxes, const Ray& ray, float limit, Lanes& enter);
-    /// Which spheres the ray meets, and where it enters them.
-    static std::uint32_t balls_on_ray(const Leaf& leaf, const Ray& ray, float limit, Lanes& enter);
+    /// Which spheres the ray meets within the limit.
+    static std::uint32_t balls_on_ray(const Leaf& leaf, const Ray& ray, float limit);
     /// Which spheres the cone may meet.
     static std::uint32_t balls_in_cone(const Leaf& leaf, const Ray& cone);
     /// Calls visit(leaf) for the leaves that the ray meets, roughly nearest first; both may change
@@ -130,8 +130,7 @@ std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Ray& ray, float limi
     return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Ray& ray, float limit,
-                                            Lanes& enter) {
+inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Ray& ray, float limit) {
     Lanes along = all_lanes(0), square = all_lanes(0);
     for (std::size_t axis = 0; axis < 4; ++axis) {
         const Lanes v = leaf.centre[axis] - ray.origin[axis];
@@ -141,12 +140,10 @@ inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Ray& ray, fl
     const Lanes radius = leaf.radius + ray.slack;
     const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
     const Lanes chord = product_sum(along, along, power);
-    // Behind the origin: that is outside, and the middle of the chord lies back.
-    const std::uint32_t met =
-        not_above(all_lanes(0), chord) & not_above(all_lanes(0), larger(along, power));
-    if (met == 0) return 0;
-    enter = along - square_root(larger(chord, all_lanes(0)));
-    return met & not_above(enter, all_lanes(limit));
+    const Lanes past = along - limit;
+    // The chord's middle lies back, and the origin outside; or beyond the limit, and its end too.
+    return not_above(all_lanes(0), chord) & not_above(all_lanes(0), larger(along, power)) &
+           (not_above(past, all_lanes(0)) | not_above(past * past, chord));
 }
 
 inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Ray& cone) {
@@ -212,17 +209,8 @@ void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const 
     const Ray ray = ray_of(origin, direction, {0, 1});
     float reach = rounded_up(limit);
     for_each_leaf<false>(ray, reach, [&](const Leaf& leaf) {
-        Lanes enter;
-        std::uint32_t met = balls_on_ray(leaf, ray, reach, enter);
-        while (met) {
-            auto lane = static_cast<std::size_t>(std::countr_zero(met));
-            for (std::uint32_t rest = met & (met - 1); rest; rest &= rest - 1) {
-                const auto other = static_cast<std::size_t>(std::countr_zero(rest));
-                if (enter[other] < enter[lane]) lane = other;
-            }
-            met &= ~(1u << lane);
-            if (enter[lane] > reach) break;
-            if (!visit(leaf.body[lane])) return false;
+        for (std::uint32_t met = balls_on_ray(leaf, ray, reach); met; met &= met - 1) {
+            if (!visit(leaf.body[static_cast<std::size_t>(std::countr_zero(met))])) return false;
             reach = rounded_up(limit);
         }
         return true;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/intersect.hpp"
+#include "render/slice.hpp"
 
 namespace tesserae::render {
 
@@ -19,7 +20,7 @@ struct ViewRay {
 /// The bodies as view rays from anywhere near the camera meet them: lenses, thick slices. What such
 /// a ray meets is three-dimensional, so Embree finds the candidates, over the exact bounds of the
 /// slices; the hits are those of hit_distance, in double. Rays from the pinhole itself have the
-/// tiles' lists, which are faster: see nearest_hit.
+/// tiles' lists, which are faster: see FilmList.
 class ViewScene {
   public:
     /// Built on the threads of the caller's task arena.

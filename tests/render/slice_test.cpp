@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "render/film_list.hpp"
 #include "render/intersect.hpp"
 #include "render/tiles.hpp"
 #include "tests/render/test_scene.hpp"
@@ -210,9 +211,11 @@ TEST(TileSource, ListsLoseNoBody) {
         TileSource source(slice, {0, 0, 96, 64}, 16);
         FrameStats stats;
         while (const auto tile = source.next()) {
-            const auto list = candidates_of(slice, tile->candidates);
-            for (std::size_t i = 1; i < list.size(); ++i)
-                EXPECT_LE(list[i - 1].nearest, list[i].nearest);
+            FilmList list;
+            list.fill(slice, tile->candidates, {tile->x0, tile->y0, tile->x1, tile->y1});
+            for (std::size_t i = 1; i < tile->candidates.size(); ++i)
+                EXPECT_LE(slice[tile->candidates[i - 1]].nearest,
+                          slice[tile->candidates[i]].nearest);
             for (int i = 0; i < 40; ++i) {
                 const Vec2 film(uniform(random, tile->x0, tile->x1),
                                 uniform(random, tile->y0, tile->y1));
@@ -225,7 +228,7 @@ TEST(TileSource, ListsLoseNoBody) {
                                      scene.settings, stats);
                     if (t < best.distance) best = {t, b};
                 }
-                const Hit hit = nearest_hit(placed, list, view, world, scene.settings, stats);
+                const Hit hit = list.nearest(placed, view, world, scene.settings, stats);
                 hit_count += hit ? 1 : 0;
                 EXPECT_EQ(hit.distance, best.distance);
                 EXPECT_EQ(hit.body, best.body);
