@@ -1,10 +1,14 @@
-// Rays against random spheres and boxes at equal screen cover, one thread: millions of rays a
-// second, as CSV. See README.md for the columns.
+// Rays against random spheres and boxes, one thread: millions of rays a second as CSV, beside two
+// yardsticks of the same run. See README.md for the columns.
+//   rays [BODIES...]     by default 100, 1000, 10000, 100000
+
+#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -12,23 +16,24 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "parallel/threads.hpp"
-#include "render/intersect.hpp"
+#include "render/film_list.hpp"
+#include "render/lanes.hpp"
 #include "render/ray_scene.hpp"
-#include "render/shadow.hpp"
 #include "render/tile_image.hpp"
-#include "render/tiles.hpp"
+#include "render/view_scene.hpp"
 
 namespace tesserae::bench {
 namespace {
 
 using namespace render;
 
-constexpr int kSide = 512;
-constexpr double kHalf = 5;           ///< of the cube of bodies [m]
-constexpr double kBodiesOnRay = 1.5;  ///< that a ray through the whole cube meets on average
+constexpr int kSide = 512;             ///< of the picture [pixels]
+constexpr double kHalf = 5;            ///< of the cube of bodies [m]
+constexpr double kMetOnAverage = 1.5;  ///< bodies that a ray through the whole cube enters
+constexpr int kRepeats = 7;
 
-/// Spheres and boxes in turn, of about one size, turned at random, in a 4D cube in front of the
-/// camera. A ray meets as many bodies whatever their number.
+/// Spheres and boxes in turn, of about one size, turned at random, in a 4D cube before the camera.
+/// Their size shrinks with their number so that the picture is covered alike: some 80 %.
 struct Cloud {
     Bodies bodies;
     std::vector<Appearance> appearance;
@@ -37,130 +42,275 @@ struct Cloud {
     Lights lights;
     Settings settings;
 
-    explicit Cloud(int count) {
+    Cloud(int count, Intersector intersector) {
         std::mt19937_64 random(1);
         std::uniform_real_distribution<> unit(-1, 1), factor(0.7, 1.4);
-        // A ball of radius r shows a cross-section of 4/3 pi r^3 to a ray, a box of sides s on
-        // average 2/(3 pi) of its boundary's content, which for a cube is 8 s^3.
-        const double section = kBodiesOnRay * std::pow(2 * kHalf, 3) / count;
+        // Seen by a ray from anywhere a ball of radius r covers 4/3 pi r^3, a cube of side s
+        // 2/(3 pi) of its boundary's content, 8 s^3.
+        const double section = kMetOnAverage * std::pow(2 * kHalf, 3) / count;
         const double radius = std::cbrt(section * 3 / (4 * kPi));
         const double side = std::cbrt(section * 3 * kPi / 16);
         for (int i = 0; i < count; ++i) {
             BodyType type = sphere_type(radius, 1, 0.5, 0);
-            if (i % 2 == 1) {
-                Vec4 sides;
-                for (int k = 0; k < 4; ++k) sides[k] = side * factor(random);
-                type.shape = Hyperbox{sides};
-            }
-            Vec4 x, u, v;
+            Vec4 sides, x, u, v;
             for (int k = 0; k < 4; ++k) {
+                sides[k] = side * factor(random);
                 x[k] = kHalf * unit(random);
                 u[k] = 2 * unit(random), v[k] = 2 * unit(random);
             }
+            if (i % 2 == 1) type.shape = Hyperbox{sides};
             const BodyId id = add(bodies, type, x);
             bodies.rotor[id] = exp(wedge(u, v));
         }
         appearance.resize(bodies.types.size());
         camera.position = {0, 0, -1.5 * kHalf, 0};
+        camera.look_at = Vec4::Zero();
         lights.suns.push_back({Vec4(1, -2, 1, 0.5).normalized(), Color::Ones(), 1});
         settings.width = settings.height = kSide;
         settings.samples = 1;
+        settings.intersector = intersector;
     }
     Picture picture() const { return {bodies, appearance, materials, camera, lights, settings}; }
 };
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
-
-template <class F>
-double time_of(F&& f) {
+/// Median processor time [s] of the repeats, and the distance of their quartiles [%].
+struct Time {
+    double median, spread;
+};
+Time time_of(const std::function<void()>& work) {
     std::vector<double> times;
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < kRepeats; ++i) {
         const double begin = thread_time();
-        f();
+        work();
         times.push_back(thread_time() - begin);
     }
-    return median(times);
+    std::sort(times.begin(), times.end());
+    const double median = times[kRepeats / 2];
+    return {median, 100 * (times[3 * kRepeats / 4] - times[kRepeats / 4]) / median};
 }
 
-void measure(int count, Intersector intersector) {
-    Cloud cloud(count);
-    cloud.settings.intersector = intersector;
-    const Picture picture = cloud.picture();
-    const FrameScene scene(picture, true);
+/// One kind of rays, measured.
+struct Measured {
+    Time time;
+    double rays;
+    FrameStats stats;
+};
 
-    std::vector<Surface> lit;
-    FrameStats view_stats;
-    const double view_time = time_of([&] {
-        lit.clear();
-        view_stats = {};
-        TileSource source(scene.slice, {0, 0, kSide, kSide}, 32);
-        while (const auto tile = source.next()) {
-            const auto list = candidates_of(scene.slice, tile->candidates);
-            for (int y = tile->y0; y < tile->y1; ++y)
-                for (int x = tile->x0; x < tile->x1; ++x) {
-                    const Vec3 view = scene.camera.ray_direction({x + 0.5, y + 0.5});
-                    const Vec4 world = scene.camera.to_world({view.x(), view.y(), view.z(), 0});
-                    const Hit hit =
-                        nearest_hit(scene.placed, list, view, world, picture.settings, view_stats);
-                    if (hit) lit.push_back(scene.shading.surface(hit, world));
-                }
+/// What the rates are compared with [million rays a second]: eight floats at a time, rays against
+/// 1024 spheres without any hierarchy; and Embree's own spheres for the slices, the same view rays.
+struct Yardsticks {
+    double loop, embree;
+};
+
+class Report {
+  public:
+    Report(const char* intersector, int bodies, const Yardsticks& y)
+        : intersector_(intersector), bodies_(bodies), yardsticks_(y) {}
+
+    void row(const char* rays, const Measured& m) const {
+        const double rate = 1e-6 * m.rays / m.time.median;
+        std::printf("%s,%d,%s,%.3g,%.1f,%.2f,%.3g,%.3g\n", intersector_, bodies_, rays, rate,
+                    m.time.spread, static_cast<double>(m.stats.distance_evaluations) / m.rays,
+                    rate / yardsticks_.loop, rate / yardsticks_.embree);
+        std::fflush(stdout);
+    }
+    void build(const char* what, const Time& t) const {
+        std::printf("%s,%d,%s,%.3g,%.1f,,,\n", intersector_, bodies_, what, 1e3 * t.median,
+                    t.spread);
+    }
+
+  private:
+    const char* intersector_;
+    int bodies_;
+    Yardsticks yardsticks_;
+};
+
+std::vector<ViewRay> view_rays(const Camera& camera) {
+    std::vector<ViewRay> rays;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            ViewRay ray;
+            ray.direction = camera.ray_direction({x + 0.5, y + 0.5});
+            rays.push_back(ray);
+        }
+    return rays;
+}
+
+double loop_rate() {
+    struct Spheres {
+        Lanes x, y, z, square;
+    };
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    std::vector<Spheres> spheres(128);
+    for (Spheres& s : spheres)
+        for (int i = 0; i < kLanes; ++i)
+            s.x[i] = unit(random), s.y[i] = unit(random), s.z[i] = 5 + unit(random),
+            s.square[i] = 0.01f;
+    constexpr int kRays = 4000;
+    volatile std::uint32_t sink = 0;
+    const Time time = time_of([&] {
+        std::uint32_t met = 0;
+        for (int r = 0; r < kRays; ++r) {
+            const float x = 0.2f * unit(random), y = 0.2f * unit(random);
+            for (const Spheres& s : spheres) {
+                const Lanes along = s.x * x + s.y * y + s.z;
+                const Lanes off = s.x * s.x + s.y * s.y + s.z * s.z - along * along;
+                met += not_above(off, s.square);
+            }
+        }
+        sink = met;
+    });
+    return 1e-6 * kRays / time.median;
+}
+
+double embree_rate(const FrameScene& scene) {
+    const RTCDevice device = rtcNewDevice(nullptr);
+    const RTCScene spheres = rtcNewScene(device);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT4, 4 * sizeof(float),
+                                                               scene.slice.size()));
+    for (const SliceBounds& s : scene.slice) {
+        for (int i = 0; i < 3; ++i) *vertex++ = static_cast<float>(s.centre[i]);
+        *vertex++ = static_cast<float>(s.radius);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(spheres, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(spheres);
+    const std::vector<ViewRay> rays = view_rays(scene.camera);
+    const Time time = time_of([&] {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        for (const ViewRay& r : rays) {
+            RTCRayHit hit{};
+            hit.ray.dir_x = static_cast<float>(r.direction.x());
+            hit.ray.dir_y = static_cast<float>(r.direction.y());
+            hit.ray.dir_z = static_cast<float>(r.direction.z());
+            hit.ray.tfar = 200;
+            hit.ray.mask = ~0u;
+            hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(spheres, &context, &hit);
         }
     });
-    const double views = kSide * kSide;
+    rtcReleaseScene(spheres);
+    rtcReleaseDevice(device);
+    return 1e-6 * static_cast<double>(rays.size()) / time.median;
+}
 
-    const double build_time = time_of([&] { RayScene(scene.placed, picture.settings); });
-    const RayScene rays(scene.placed, picture.settings);
-    const SunDisc sun = sun_disc(cloud.lights.suns[0]);
-    std::erase_if(lit, [&](const Surface& s) { return s.normal.dot(sun.toward) <= 0; });
-    FrameStats hard_stats, bounce_stats, soft_stats;
-    std::size_t hidden = 0, hits = 0;
-    double light = 0;
-    const double hard_time = time_of([&] {
-        hidden = 0, hard_stats = {};
-        for (const Surface& s : lit)
-            hidden += rays.is_blocked(s.point, sun.toward, kMiss, s.body, hard_stats);
+/// All view rays by the tiles' lists, with the surfaces that they meet in `surfaces`.
+Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) {
+    Measured m{{}, double{kSide} * kSide, {}};
+    FilmList list;
+    const auto trace_window = [&](const Tile& tile, int x0, int y0) {
+        const Crop window = {x0, y0, x0 + FilmList::kSide, y0 + FilmList::kSide};
+        list.fill(scene.slice, tile.candidates, window);
+        for (int y = window.y0; y < window.y1; ++y)
+            for (int x = window.x0; x < window.x1; ++x) {
+                const Vec3 view = scene.camera.ray_direction({x + 0.5, y + 0.5});
+                const Vec4 world = scene.camera.to_world({view.x(), view.y(), view.z(), 0});
+                const Hit hit =
+                    list.nearest(scene.placed, view, world, scene.picture.settings, m.stats);
+                if (hit) surfaces.push_back(scene.shading.surface(hit, world));
+            }
+    };
+    m.time = time_of([&] {
+        m.stats = {};
+        surfaces.clear();
+        TileSource source(scene.slice, {0, 0, kSide, kSide}, scene.picture.settings.tile);
+        while (const auto tile = source.next())
+            for (int y = tile->y0; y < tile->y1; y += FilmList::kSide)
+                for (int x = tile->x0; x < tile->x1; x += FilmList::kSide)
+                    trace_window(*tile, x, y);
     });
-    const Shadows shadows(scene.placed);
-    const double soft_time = time_of([&] {
-        light = 0, soft_stats = {};
-        for (const Surface& s : lit) light += shadows.visibility(sun, s.point, s.body, soft_stats);
+    return m;
+}
+
+/// The same rays by the hierarchy for rays that do not start at one point.
+Measured through_view_scene(const FrameScene& scene, std::size_t& hit_count) {
+    Measured m{{}, double{kSide} * kSide, {}};
+    const ViewScene view(scene.placed, scene.camera, scene.picture.settings, {}, 0);
+    const std::vector<ViewRay> rays = view_rays(scene.camera);
+    std::vector<Hit> hits(rays.size());
+    m.time = time_of([&] {
+        m.stats = {};
+        view.nearest(rays, hits, m.stats);
     });
+    hit_count = static_cast<std::size_t>(
+        std::count_if(hits.begin(), hits.end(), [](const Hit& h) { return bool(h); }));
+    return m;
+}
+
+/// One ray from every lit surface.
+template <class Trace>
+Measured from_surfaces(const std::vector<Surface>& surfaces, Trace&& trace) {
+    Measured m{{}, static_cast<double>(surfaces.size()), {}};
+    volatile double sink = 0;
+    m.time = time_of([&] {
+        m.stats = {};
+        double sum = 0;
+        for (std::size_t i = 0; i < surfaces.size(); ++i)
+            sum += static_cast<double>(trace(i, surfaces[i], m.stats));
+        sink = sum;
+    });
+    return m;
+}
+
+/// Directions distributed by the cosine about the normals, as a path's are.
+std::vector<Vec4> bounces(const std::vector<Surface>& surfaces) {
     std::mt19937_64 random(2);
     std::normal_distribution<> normal;
     std::vector<Vec4> directions;
-    for (const Surface& s : lit) {
+    for (const Surface& s : surfaces) {
         Vec4 d;
         for (int k = 0; k < 4; ++k) d[k] = normal(random);
         directions.push_back((s.normal + d.normalized()).normalized());
     }
-    const double bounce_time = time_of([&] {
-        hits = 0, bounce_stats = {};
-        for (std::size_t i = 0; i < lit.size(); ++i)
-            hits += rays.nearest(lit[i].point, directions[i], kMiss, lit[i].body, bounce_stats)
-                        .distance < kMiss;
+    return directions;
+}
+
+void measure(int count, Intersector intersector) {
+    const Cloud cloud(count, intersector);
+    const Picture picture = cloud.picture();
+    const FrameScene scene(picture, true);
+    const Report report(intersector == Intersector::kTrace ? "trace" : "analytic", count,
+                        {loop_rate(), embree_rate(scene)});
+    std::vector<Surface> lit;
+    const Measured view = through_lists(scene, lit);
+    report.row("view", view);
+    std::size_t hit_count = 0;
+    report.row("view_scene", through_view_scene(scene, hit_count));
+    if (hit_count != lit.size()) {
+        std::fprintf(stderr, "lists meet %zu bodies, the hierarchy %zu\n", lit.size(), hit_count);
+        std::exit(1);
+    }
+
+    const SunDisc sun = sun_disc(cloud.lights.suns[0]);
+    std::erase_if(lit, [&](const Surface& s) { return s.normal.dot(sun.toward) <= 0; });
+    const std::vector<Vec4> directions = bounces(lit);
+    const RayScene rays(scene.placed, picture.settings);
+    const Shadows shadows(scene.placed);
+    const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
+        return rays.is_blocked(s.point, sun.toward, kMiss, s.body, stats);
     });
-    const double n = static_cast<double>(lit.size());
-    const char* name = intersector == Intersector::kTrace ? "trace" : "analytic";
-    const auto rate = [](double rays_traced, double time) { return 1e-6 * rays_traced / time; };
-    const auto per = [](std::uint64_t evaluations, double of) {
-        return static_cast<double>(evaluations) / of;
-    };
-    std::printf(
-        "%s,%d,view+hard %.2f (eval %.2f) view %.2f hard %.2f soft %.2f bounce %.2f | eval view "
-        "%.2f hard %.2f soft %.2f bounce %.2f | lit %.2f hidden %.2f light %.3f hits %.2f build "
-        "%.2f ms\n",
-        name, count, rate(views + n, view_time + hard_time),
-        per(view_stats.distance_evaluations + hard_stats.distance_evaluations, views + n),
-        rate(views, view_time), rate(n, hard_time), rate(n, soft_time), rate(n, bounce_time),
-        per(view_stats.distance_evaluations, views), per(hard_stats.distance_evaluations, n),
-        per(soft_stats.distance_evaluations, n), per(bounce_stats.distance_evaluations, n),
-        n / views, static_cast<double>(hidden) / n, light / n, static_cast<double>(hits) / n,
-        1e3 * build_time);
-    std::fflush(stdout);
+    report.row("hard", hard);
+    Measured both = {
+        {view.time.median + hard.time.median, std::max(view.time.spread, hard.time.spread)},
+        view.rays + hard.rays,
+        view.stats};
+    both.stats += hard.stats;
+    report.row("view_and_hard", both);
+    report.row("soft", from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
+                   return shadows.visibility(sun, s.point, s.body, stats);
+               }));
+    report.row("bounce",
+               from_surfaces(lit, [&](std::size_t i, const Surface& s, FrameStats& stats) {
+                   return rays.nearest(s.point, directions[i], kMiss, s.body, stats) ? 1 : 0;
+               }));
+    report.build("build_tree_ms", time_of([&] { BodyTree(scene.placed); }));
+    report.build("build_view_scene_ms",
+                 time_of([&] { ViewScene(scene.placed, scene.camera, picture.settings, {}, 0); }));
 }
 
 }  // namespace
@@ -171,9 +321,14 @@ int main(int argc, char** argv) {
     std::vector<int> counts;
     for (int i = 1; i < argc; ++i) counts.push_back(std::atoi(argv[i]));
     if (counts.empty()) counts = {100, 1000, 10000, 100000};
+    std::puts(
+        "intersector,bodies,rays,million_per_s,spread_percent,evaluations_per_ray,"
+        "over_loop,over_embree_spheres");
     parallel::Threads threads(1);
     threads.run([&] {
-        for (auto intersector : {render::Intersector::kAnalytic, render::Intersector::kTrace})
-            for (int count : counts) bench::measure(count, intersector);
+        for (const int count : counts)
+            for (const auto intersector :
+                 {render::Intersector::kAnalytic, render::Intersector::kTrace})
+                bench::measure(count, intersector);
     });
 }

@@ -77,37 +77,4 @@ double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Vec4&
         *body.shape);
 }
 
-std::vector<Candidate> candidates_of(std::span<const SliceBounds> slice,
-                                     std::span<const std::uint32_t> list) {
-    std::vector<Candidate> candidates;
-    candidates.reserve(list.size());
-    for (std::uint32_t i : list) {
-        const SliceBounds& s = slice[i];
-        candidates.push_back(
-            {s.centre, s.centre.squaredNorm(), s.radius * s.radius, s.nearest, s.body});
-    }
-    return candidates;
-}
-
-Hit nearest_hit(const PlacedBodies& placed, std::span<const Candidate> candidates, const Vec3& view,
-                const Vec4& world, const Settings& settings, FrameStats& stats) {
-    Hit hit;
-    double limit = settings.max_distance;
-    for (const Candidate& c : candidates) {
-        if (c.nearest > limit) break;
-        const double middle = c.centre.dot(view);
-        const double off = c.distance_squared - middle * middle;
-        if (off > c.radius_squared) continue;
-        if (middle < 0 && c.distance_squared > c.radius_squared) continue;
-        const double past = middle - limit;
-        if (past > 0 && past * past > c.radius_squared - off) continue;
-        const double t = hit_distance(placed, c.body, Vec4::Zero(), world, limit, settings, stats);
-        if (t < hit.distance || (t == hit.distance && t < kMiss && c.body < hit.body)) {
-            hit = {t, c.body};
-            limit = t;
-        }
-    }
-    return hit;
-}
-
 }  // namespace tesserae::render

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "render/film_list.hpp"
 #include "render/sampler.hpp"
 
 namespace tesserae::render {
@@ -23,12 +24,13 @@ Imath::half to_half(double v) {
     return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
 }
 
-/// The rays of one tile.
+/// The rays of one tile, window by window of the size of a film list.
 class TileRays {
   public:
-    TileRays(const FrameScene& scene, const Tile& tile)
-        : scene_(scene), candidates_(candidates_of(scene.slice, tile.candidates)) {}
+    TileRays(const FrameScene& scene, const Tile& tile) : scene_(scene), tile_(tile) {}
 
+    /// Makes ready for the pixels of a window.
+    void enter(const Crop& window) { list_.fill(scene_.slice, tile_.candidates, window); }
     Pixel pixel(int x, int y);
     FrameStats stats;
 
@@ -42,15 +44,15 @@ class TileRays {
     void add(const View& view, const SampleNumber& sample, Filtered& sum);
 
     const FrameScene& scene_;
-    std::vector<Candidate> candidates_;
+    const Tile& tile_;
+    FilmList list_;
 };
 
 TileRays::View TileRays::first_surface(const Vec2& film) {
     ++stats.view_rays;
     const Vec3 view = scene_.camera.ray_direction(film);
     const Vec4 world = scene_.camera.to_world({view.x(), view.y(), view.z(), 0});
-    const Hit hit =
-        nearest_hit(scene_.placed, candidates_, view, world, scene_.picture.settings, stats);
+    const Hit hit = list_.nearest(scene_.placed, view, world, scene_.picture.settings, stats);
     if (!hit) return {world, std::nullopt};
     return {world, scene_.shading.surface(hit, Vec4::Zero(), world)};
 }
@@ -125,13 +127,21 @@ FrameScene::FrameScene(const Picture& p, bool color)
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
     TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};
-    image.pixels.reserve(static_cast<std::size_t>(image.width()) *
-                         static_cast<std::size_t>(tile.y1 - tile.y0));
+    const auto width = static_cast<std::size_t>(image.width());
+    image.pixels.resize(width * static_cast<std::size_t>(tile.y1 - tile.y0));
     TileRays rays(scene, tile);
-    for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            if (stop.load(std::memory_order_relaxed)) throw Stopped();
-            image.pixels.push_back(rays.pixel(x, y));
+    constexpr int kSide = FilmList::kSide;
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += kSide)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += kSide) {
+            const Crop window = {x0, y0, std::min(x0 + kSide, tile.x1),
+                                 std::min(y0 + kSide, tile.y1)};
+            rays.enter(window);
+            for (int y = window.y0; y < window.y1; ++y)
+                for (int x = window.x0; x < window.x1; ++x) {
+                    if (stop.load(std::memory_order_relaxed)) throw Stopped();
+                    image.pixels[static_cast<std::size_t>(y - tile.y0) * width +
+                                 static_cast<std::size_t>(x - tile.x0)] = rays.pixel(x, y);
+                }
         }
     image.stats = rays.stats;
     return image;

@@ -4,7 +4,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 packages=(
     g++ cmake ninja-build ccache pkg-config
-    libtbb-dev libeigen3-dev libopenexr-dev libpng-dev libhdf5-dev zlib1g-dev
+    libtbb-dev libeigen3-dev libembree-dev libopenexr-dev libpng-dev libhdf5-dev zlib1g-dev
     libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
     libgtest-dev
 )

@@ -191,24 +191,5 @@ TEST(HitDistance, StepsUsedUpAreCountedHits) {
     EXPECT_EQ(stats.unresolved, 1u);
 }
 
-TEST(NearestHit, EqualDistancesGoToTheLowerId) {
-    TestScene scene;
-    for (int i = 0; i < 4; ++i) scene.add(Hypersphere{1}, {0, 0, 5, 0});
-    scene.camera.position = Vec4::Zero();
-    scene.camera.look_at = Vec4::UnitZ();
-    const Camera camera(scene.camera, 10, 10);
-    const PlacedBodies placed = place_bodies(scene.picture(), camera.origin());
-    const auto slice = slice_bounds(placed, camera, 200);
-    const std::vector<std::uint32_t> backwards = {3, 2, 1, 0};
-    FrameStats stats;
-    for (Intersector intersector : {Intersector::kTrace, Intersector::kAnalytic}) {
-        scene.settings.intersector = intersector;
-        const Hit hit = nearest_hit(placed, candidates_of(slice, backwards), Vec3::UnitZ(),
-                                    Vec4::UnitZ(), scene.settings, stats);
-        EXPECT_EQ(hit.distance, 4);
-        EXPECT_EQ(hit.body, 0u);
-    }
-}
-
 }  // namespace
 }  // namespace tesserae::render

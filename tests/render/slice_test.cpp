@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "render/film_list.hpp"
 #include "render/intersect.hpp"
 #include "render/tiles.hpp"
 #include "tests/render/test_scene.hpp"
@@ -84,6 +85,8 @@ TEST(SliceBounds, HoldEveryHit) {
                                             [&](const auto& x) { return x.body == b; });
                 ASSERT_NE(s, slice.end());
                 EXPECT_LE((t * view - s->centre).norm(), s->radius);
+                EXPECT_TRUE((t * view - s->low).minCoeff() >= 0);
+                EXPECT_TRUE((s->high - t * view).minCoeff() >= 0);
                 EXPECT_GE(t, s->nearest);
                 EXPECT_TRUE(s->x0 <= film.x() && film.x() <= s->x1);
                 EXPECT_TRUE(s->y0 <= film.y() && film.y() <= s->y1);
@@ -105,6 +108,59 @@ TEST(SliceBounds, RectangleTouchesTheSphere) {
     ASSERT_EQ(slice.size(), 1u);
     EXPECT_NEAR(slice[0].x0, 100 - half, 1e-4);
     EXPECT_NEAR(slice[0].y1, 100 + half, 1e-4);
+}
+
+/// How far a body's slices at `range` reach along an axis of the camera: the farthest of many
+/// support points that lie in the slice, joined pairwise from both sides of it.
+double sampled_extent(const Hyperbox& box, const Rotor& rotor, int axis, const SliceRange& range) {
+    // A slice's farthest point lies on an edge of the box: try where each leaves the range.
+    const Mat4 turn = to_matrix(rotor);
+    double best = -kMiss;
+    for (int edge = 0; edge < 4; ++edge)
+        for (int corner = 0; corner < 16; ++corner) {
+            Vec4 from = 0.5 * box.size;
+            for (int k = 0; k < 4; ++k)
+                if (corner >> k & 1) from[k] = -from[k];
+            Vec4 to = from;
+            to[edge] = -to[edge];
+            from = turn * from, to = turn * to;
+            for (const double w : {from[3], range.low, range.high}) {
+                if (w < range.low || w > range.high) continue;
+                const double part = (w - from[3]) / (to[3] - from[3]);
+                if (part >= 0 && part <= 1)
+                    best = std::max(best, from[axis] + part * (to[axis] - from[axis]));
+            }
+        }
+    return best;
+}
+
+TEST(SliceBounds, BoxIsTheSlicesOwn) {
+    // Within 0.2 % of the body, for one slice and for a range of them.
+    Random random(23);
+    int compared = 0;
+    for (int round = 0; round < 400; ++round) {
+        TestScene scene;
+        const Hyperbox box{random_vector(random, 1).cwiseAbs() + Vec4::Constant(0.05)};
+        const Rotor rotor = random_rotor(random);
+        scene.add(box, {0, 0, 0, 0}, rotor);
+        scene.camera.position = {0, 0, -8, 0};
+        const Camera camera(scene.camera, 100, 100);
+        SliceRange range = {uniform(random, -0.7, 0.7), 0};
+        range.high = range.low + (round % 2 == 0 ? 0 : 0.4);
+        const auto slice =
+            slice_bounds(place_bodies(scene.picture(), camera.origin()), camera, 200, range);
+        if (slice.empty()) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double extent = sampled_extent(box, rotor, axis, range);
+            // The last sliver of a slice may be missed by both or by one.
+            if (extent == -kMiss) continue;
+            const double high = slice[0].high[axis] - slice[0].centre[axis];
+            EXPECT_GE(high, extent) << round;
+            EXPECT_LE(high, extent + 0.002 * box.size.norm()) << round;
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 500);
 }
 
 TEST(TileSource, CoversTheWindowOnceAlongACurve) {
@@ -155,9 +211,11 @@ TEST(TileSource, ListsLoseNoBody) {
         TileSource source(slice, {0, 0, 96, 64}, 16);
         FrameStats stats;
         while (const auto tile = source.next()) {
-            const auto list = candidates_of(slice, tile->candidates);
-            for (std::size_t i = 1; i < list.size(); ++i)
-                EXPECT_LE(list[i - 1].nearest, list[i].nearest);
+            FilmList list;
+            list.fill(slice, tile->candidates, {tile->x0, tile->y0, tile->x1, tile->y1});
+            for (std::size_t i = 1; i < tile->candidates.size(); ++i)
+                EXPECT_LE(slice[tile->candidates[i - 1]].nearest,
+                          slice[tile->candidates[i]].nearest);
             for (int i = 0; i < 40; ++i) {
                 const Vec2 film(uniform(random, tile->x0, tile->x1),
                                 uniform(random, tile->y0, tile->y1));
@@ -170,7 +228,7 @@ TEST(TileSource, ListsLoseNoBody) {
                                      scene.settings, stats);
                     if (t < best.distance) best = {t, b};
                 }
-                const Hit hit = nearest_hit(placed, list, view, world, scene.settings, stats);
+                const Hit hit = list.nearest(placed, view, world, scene.settings, stats);
                 hit_count += hit ? 1 : 0;
                 EXPECT_EQ(hit.distance, best.distance);
                 EXPECT_EQ(hit.body, best.body);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/intersect.hpp"
+#include "render/slice.hpp"
+
+namespace tesserae::render {
+
+/// The bodies that rays from the pinhole through a small window of the film can meet, nearest
+/// first.
+class FilmList {
+  public:
+    /// Side of the windows that pay best [pixels]: a list costs some hundred comparisons to make,
+    /// and is the shorter the smaller its window.
+    static constexpr int kSide = 8;
+
+    /// Makes the list anew.
+    /// @param list     indices into `slice`, ascending by `nearest`
+    /// @param window   film points, closed
+    void fill(std::span<const SliceBounds> slice, std::span<const std::uint32_t> list,
+              const Crop& window);
+
+    /// The nearest body that a ray through the window meets; equal distances go to the lower id.
+    /// @param view    unit direction in camera coordinates
+    /// @param world   the same direction in world axes
+    Hit nearest(const PlacedBodies& placed, const Vec3& view, const Vec4& world,
+                const Settings& settings, FrameStats& stats) const;
+
+  private:
+    struct Candidate {
+        Vec3 centre;              ///< of the sphere about the slice
+        double distance_squared;  ///< from the pinhole
+        double radius_squared;
+        double nearest;  ///< lower bound of the hit distance [m]
+        std::uint32_t body;
+    };
+    std::vector<Candidate> candidates_;
+};
+
+}  // namespace tesserae::render
