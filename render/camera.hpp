@@ -40,11 +40,14 @@ class Camera {
         return {centre_.x() + x / pixel_, centre_.y() - y / pixel_};
     }
 
+    /// A pixel's side on the film at distance 1.
+    double pixel_size() const { return pixel_; }
+
   private:
     Vec4 origin_;
-    Mat4 axes_;     ///< columns: right, up, forward, fourth
-    Vec2 centre_;   ///< film point of the forward axis
-    double pixel_;  ///< a pixel's side on the film at distance 1
+    Mat4 axes_;    ///< columns: right, up, forward, fourth
+    Vec2 centre_;  ///< film point of the forward axis
+    double pixel_;
 };
 
 }  // namespace tesserae::render

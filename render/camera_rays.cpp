@@ -7,17 +7,6 @@
 namespace tesserae::render {
 namespace {
 
-/// Part of the way from one camera to another.
-CameraDescription between(const CameraDescription& a, const CameraDescription& b, double part) {
-    CameraDescription c = a;
-    c.position += part * (b.position - a.position);
-    c.look_at += part * (b.look_at - a.look_at);
-    c.up = (1 - part) * a.up.normalized() + part * b.up.normalized();
-    c.fourth = (1 - part) * a.fourth.normalized() + part * b.fourth.normalized();
-    c.field_of_view += part * (b.field_of_view - a.field_of_view);
-    return c;
-}
-
 /// Uniform in the unit disc, squares to sectors (P. Shirley and K. Chiu, 1997).
 Vec2 on_disc(double u, double v) {
     const double a = 2 * u - 1, b = 2 * v - 1;
@@ -47,39 +36,31 @@ std::optional<SliceSheet::Cell> SliceSheet::cell_of(int x, int y) const {
     return Cell{column * cell_width_, row * cell_height_, part * thickness_};
 }
 
-CameraRays::CameraRays(const CameraDescription& opening, const CameraDescription& closing,
-                       int width, int height)
-    : opening_(opening),
-      closing_(closing),
-      sheet_(opening, width, height),
-      camera_(opening, sheet_.cell_width(), sheet_.cell_height()),
-      focus_(opening.focus_distance > 0 ? opening.focus_distance
-                                        : (opening.look_at - opening.position).norm()),
-      is_pinhole_(opening.aperture == 0 && opening.slice_thickness == 0 && opening.shutter == 0),
-      moves_(opening.shutter > 0 && !(opening == closing)) {}
+CameraRays::CameraRays(const CameraDescription& description, const Camera& camera,
+                       const SliceSheet& sheet)
+    : camera_(camera),
+      aperture_(description.aperture),
+      focus_(description.focus_distance > 0 ? description.focus_distance
+                                            : (description.look_at - description.position).norm()),
+      thickness_(description.slice_thickness),
+      is_sheet_(sheet.cell_of(0, 0)->fourth != 0) {}
 
-Ray CameraRays::middle(const SliceSheet::Cell& cell, const Vec2& film) const {
-    const Vec3 view = camera_.ray_direction(film - Vec2(cell.x0, cell.y0));
-    return {cell.fourth * camera_.fourth(), camera_.to_world({view.x(), view.y(), view.z(), 0}), 0};
+bool CameraRays::is_pinhole() const { return aperture_ == 0 && thickness_ == 0; }
+
+ViewRay CameraRays::middle(const SliceSheet::Cell& cell, const Vec2& film) const {
+    return {Vec3::Zero(), camera_.ray_direction(film - Vec2(cell.x0, cell.y0)), cell.fourth};
 }
 
-Ray CameraRays::sample(const SliceSheet::Cell& cell, const Vec2& film,
-                       const std::array<double, 4>& u) const {
-    if (is_pinhole_) return middle(cell, film);
-    const double time = opening_.shutter > 0 ? u[3] : 0;
-    const Camera camera = moves_ ? Camera(between(opening_, closing_, time), sheet_.cell_width(),
-                                          sheet_.cell_height())
-                                 : camera_;
-    Vec3 view = camera.ray_direction(film - Vec2(cell.x0, cell.y0));
-    Vec4 from = {0, 0, 0, cell.fourth};
-    if (opening_.slices == 1) from[3] = (u[2] - 0.5) * opening_.slice_thickness;
-    if (opening_.aperture > 0) {
-        const Vec2 lens = opening_.aperture * on_disc(u[0], u[1]);
-        from.head<2>() = lens;
-        view = (focus_ / view.z() * view - Vec3(lens.x(), lens.y(), 0)).normalized();
+ViewRay CameraRays::sample(const SliceSheet::Cell& cell, const Vec2& film,
+                           const std::array<double, 3>& u) const {
+    ViewRay ray = middle(cell, film);
+    if (!is_sheet_) ray.fourth = (u[2] - 0.5) * thickness_;
+    if (aperture_ > 0) {
+        const Vec2 lens = aperture_ * on_disc(u[0], u[1]);
+        ray.origin = {lens.x(), lens.y(), 0};
+        ray.direction = (focus_ / ray.direction.z() * ray.direction - ray.origin).normalized();
     }
-    return {camera.origin() - camera_.origin() + camera.to_world(from),
-            camera.to_world({view.x(), view.y(), view.z(), 0}), time};
+    return ray;
 }
 
 }  // namespace tesserae::render

@@ -4,18 +4,13 @@
 #include <optional>
 
 #include "render/camera.hpp"
+#include "render/view_scene.hpp"
 
 namespace tesserae::render {
 
-/// A ray at an instant of the open shutter.
-struct Ray {
-    Vec4 origin;      ///< relative to the camera's position when the shutter opens, world axes [m]
-    Vec4 direction;   ///< unit, world axes
-    double time = 0;  ///< 0: the shutter opens, 1: it closes
-};
-
 /// The parallel slices that a frame shows, in cells of equal size: one that fills the frame, or
-/// several row by row. They are spread evenly over the slice's thickness, the first at -w.
+/// several row by row. They are spread evenly over the slice's thickness, the first at its lower
+/// end.
 class SliceSheet {
   public:
     SliceSheet(const CameraDescription& camera, int width, int height);
@@ -34,36 +29,31 @@ class SliceSheet {
     double thickness_;
 };
 
-/// The view rays of a frame: through the pinhole, or through a thin lens, from anywhere in a thick
-/// slice, at any instant while the shutter is open; what has no extent is left out. The camera's
-/// position and axes move evenly while it is open.
+/// The view rays of a camera: through the pinhole or a thin lens, in its slice, in several, or
+/// anywhere in a thick one. What has no extent is left out.
 class CameraRays {
   public:
-    /// @param closing   the camera when the shutter closes
-    /// @throws InputError   as Camera()
-    CameraRays(const CameraDescription& opening, const CameraDescription& closing, int width,
-               int height);
+    /// @param camera   of one cell, as it is at the instant of the rays
+    CameraRays(const CameraDescription& description, const Camera& camera, const SliceSheet& sheet);
 
-    /// The camera of a cell when the shutter opens.
-    const Camera& camera() const { return camera_; }
-    const SliceSheet& sheet() const { return sheet_; }
-    /// Every ray starts in the camera's position, lies in its slice, and has time 0.
-    bool is_pinhole() const { return is_pinhole_; }
+    /// Every ray starts in the camera's position and lies in its slice.
+    bool is_pinhole() const;
+    /// Where rays start along the fourth axis, and how far from the camera in their slice.
+    SliceRange range() const { return {-0.5 * thickness_, 0.5 * thickness_}; }
+    double reach() const { return aperture_; }
 
-    /// The ray that stands for a film point as a whole: through the middle of lens and slice, when
-    /// the shutter opens.
+    /// The ray that stands for a film point as a whole: through the middle of lens and slice.
     /// @param film   continuous pixels from the frame's top left
-    Ray middle(const SliceSheet::Cell& cell, const Vec2& film) const;
-    /// @param u   uniform in [0, 1)^4: lens, lens, slice, time
-    Ray sample(const SliceSheet::Cell& cell, const Vec2& film,
-               const std::array<double, 4>& u) const;
+    ViewRay middle(const SliceSheet::Cell& cell, const Vec2& film) const;
+    /// @param u   uniform in [0, 1)^3: two for the lens, one for the slice
+    ViewRay sample(const SliceSheet::Cell& cell, const Vec2& film,
+                   const std::array<double, 3>& u) const;
 
   private:
-    CameraDescription opening_, closing_;
-    SliceSheet sheet_;
-    Camera camera_;
-    double focus_;  ///< distance of the plane in focus, along the forward axis [m]
-    bool is_pinhole_, moves_;
+    const Camera& camera_;
+    double aperture_, focus_;  ///< radius of the lens; forward to what is sharp [m]
+    double thickness_;
+    bool is_sheet_;
 };
 
 }  // namespace tesserae::render

@@ -88,6 +88,9 @@ struct CameraDescription {
 enum class Integrator { kDirect, kPath };
 enum class Intersector { kTrace, kAnalytic };
 
+/// See PixelFilter.
+enum class FilterKind { kBox, kTriangle, kGaussian, kBlackmanHarris };
+
 /// Half open, in pixels from the top left.
 struct Crop {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -95,6 +98,7 @@ struct Crop {
 
 struct Channels {
     bool color = true, depth = true, normal = true, albedo = true, id = true, position = false;
+    bool variance = false, samples = false;
 };
 
 struct Settings {
@@ -107,6 +111,10 @@ struct Settings {
     int max_steps = 200;
     double max_distance = 200;  ///< along a view ray [m]
     int tile = 32;
+    FilterKind filter = FilterKind::kBox;
+    double filter_width = 1;  ///< of its support [pixels]
+    double noise_target = 0;  ///< see PixelEstimate::noise(); 0: every pixel has `samples`
+    int max_samples = 16;     ///< at least `samples`
     Channels channels;
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;

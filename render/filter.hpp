@@ -1,15 +1,10 @@
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "render/camera.hpp"
 
 namespace tesserae::render {
-
-enum class FilterKind { kBox, kTriangle, kGaussian, kBlackmanHarris };
-inline constexpr std::string_view kFilterNames[] = {"box", "triangle", "gaussian",
-                                                    "blackman-harris"};
 
 /// A pixel filter that is sampled: samples fall with the filter's density and all weigh the same,
 /// so that each belongs to one pixel, and neither crop nor tiles change one (M. Ernst et al.,

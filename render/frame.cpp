@@ -38,8 +38,8 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const Settings& settings = picture.settings;
     const Crop window = settings.crop.value_or(Crop{0, 0, settings.width, settings.height});
     const FrameScene scene(picture, settings.channels.color || !preview.empty());
-    TileSource source(scene.slice, window, settings.tile);
-    ExrWriter image(exr, settings, window, info, picture.camera, scene.camera);
+    TileSource source(scene.slice(), window, settings.tile);
+    ExrWriter image(exr, settings, window, info, picture.camera, scene.opening().camera);
     std::optional<Preview> small;
     if (!preview.empty()) small.emplace(window, settings.exposure);
     FrameStats stats;

@@ -13,12 +13,15 @@ namespace tesserae::render {
 
 /// Everything that decides a frame's pixels. Refers to its parts; they must outlive it.
 struct Picture {
-    const Bodies& bodies;                    ///< poses at the frame's time
+    const Bodies& bodies;                    ///< poses at the frame's time, when the shutter opens
     std::span<const Appearance> appearance;  ///< by body type
     std::span<const Material> materials;
     const CameraDescription& camera;
     const Lights& lights;
     const Settings& settings;
+    /// When the shutter closes: poses, camera. Both, or none for one that is open for no time.
+    const Bodies* closing = nullptr;
+    const CameraDescription* closing_camera = nullptr;
 };
 
 /// What goes into the header beside the pixels.

@@ -40,12 +40,13 @@ LightTransport::LightTransport(const Picture& picture, const PlacedBodies& place
     if (needs_rays(picture)) scene_.emplace(placed, picture.settings);
 }
 
-Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& direction,
-                               const Sampler& sampler, FrameStats& stats) const {
+Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& origin,
+                               const Vec4& direction, const Sampler& sampler,
+                               FrameStats& stats) const {
     const bool is_direct = picture_.settings.integrator == Integrator::kDirect;
     const auto groups =
         1 + static_cast<std::uint32_t>(lights_.suns.size() + lights_.spheres.size());
-    Ray ray = {Vec4::Zero(), direction};
+    Ray ray = {origin, direction};
     ray.is_view = true;
     Arrival arrival = {first};
     const double limit = first ? first->distance : kMiss;

@@ -31,10 +31,11 @@ class LightTransport {
     LightTransport(const Picture& picture, const PlacedBodies& placed, const LightSet& lights,
                    const Shading& shading);
 
-    /// @param first       what a view ray from the camera met, if any body
-    /// @param direction   of that ray, unit, world axes
+    /// @param first       what a view ray met, if any body
+    /// @param origin      of that ray, relative to the camera, world axes
+    /// @param direction   of that ray, unit
     /// @param sampler     of the sample; its groups are used from 0 on
-    Color radiance(const std::optional<Surface>& first, const Vec4& direction,
+    Color radiance(const std::optional<Surface>& first, const Vec4& origin, const Vec4& direction,
                    const Sampler& sampler, FrameStats& stats) const;
 
   private:

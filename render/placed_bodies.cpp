@@ -22,7 +22,7 @@ double radius_of(const Shape& shape) {
 
 }  // namespace
 
-PlacedBodies place_bodies(const Picture& picture, const Vec4& camera_origin) {
+PlacedBodies place_bodies(const Picture& picture, const Bodies& poses, const Vec4& camera_origin) {
     const Bodies& bodies = picture.bodies;
     PlacedBodies placed;
     for (BodyId id = 0; id < bodies.size(); ++id) {
@@ -33,10 +33,10 @@ PlacedBodies place_bodies(const Picture& picture, const Vec4& camera_origin) {
         const bool round = std::holds_alternative<Hypersphere>(shape);
         if (is_bounded(shape) && (!round || has_pattern(picture, type))) {
             turn = static_cast<std::uint32_t>(placed.turns.size());
-            placed.turns.push_back(to_matrix(bodies.rotor[id]).transpose());
+            placed.turns.push_back(to_matrix(poses.rotor[id]).transpose());
         }
         placed.bodies.push_back(
-            {bodies.position[id] - camera_origin, radius_of(shape), &shape, id, turn});
+            {poses.position[id] - camera_origin, radius_of(shape), &shape, id, turn});
     }
     return placed;
 }

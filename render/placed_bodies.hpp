@@ -39,6 +39,10 @@ struct PlacedBodies {
     }
 };
 
-PlacedBodies place_bodies(const Picture& picture, const Vec4& camera_origin);
+/// @param poses   of the picture's bodies at the instant
+PlacedBodies place_bodies(const Picture& picture, const Bodies& poses, const Vec4& camera_origin);
+inline PlacedBodies place_bodies(const Picture& picture, const Vec4& camera_origin) {
+    return place_bodies(picture, picture.bodies, camera_origin);
+}
 
 }  // namespace tesserae::render

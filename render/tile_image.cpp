@@ -1,22 +1,22 @@
 #include "render/tile_image.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 
 #include "core/error.hpp"
 #include "render/film_list.hpp"
+#include "render/pixel_estimate.hpp"
 #include "render/sampler.hpp"
 
 namespace tesserae::render {
 namespace {
 
-/// What is averaged over a pixel.
-struct Filtered {
-    Color color = Color::Zero();
-    Color albedo = Color::Zero();
-    double alpha = 0;
-};
-
+/// Samples between two looks at a pixel's noise; and view rays that are traced together.
+constexpr int kBatch = 16;
+/// The group of a sample's numbers that the camera uses; scattering counts from 0.
+constexpr std::uint32_t kCameraGroup = 0xffffffffu;
 /// The largest finite half.
 constexpr double kHalfMax = 65504;
 
@@ -24,106 +24,175 @@ Imath::half to_half(double v) {
     return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
 }
 
+/// A view ray on its way into the scene.
+struct View {
+    const Instant* instant;
+    ViewRay ray;
+    Vec4 origin, direction;  ///< world axes, relative to the instant's camera
+    std::optional<Surface> surface;
+
+    View(const Instant& i, const ViewRay& r)
+        : instant(&i),
+          ray(r),
+          origin(i.camera.to_world({r.origin.x(), r.origin.y(), r.origin.z(), r.fourth})),
+          direction(i.camera.to_world({r.direction.x(), r.direction.y(), r.direction.z(), 0})) {}
+};
+
+/// What is averaged over a pixel's samples.
+struct Filtered {
+    PixelEstimate color;
+    Color albedo = Color::Zero();
+    double alpha = 0;
+    int count = 0;
+};
+
 /// The rays of one tile, window by window of the size of a film list.
 class TileRays {
   public:
     TileRays(const FrameScene& scene, const Tile& tile) : scene_(scene), tile_(tile) {}
 
     /// Makes ready for the pixels of a window.
-    void enter(const Crop& window) { list_.fill(scene_.slice, tile_.candidates, window); }
+    void enter(const Crop& window) { list_.fill(scene_.slice(), tile_.candidates, window); }
     Pixel pixel(int x, int y);
     FrameStats stats;
 
   private:
-    /// A view ray and the body that it meets, if any.
-    struct View {
-        Vec4 direction;
-        std::optional<Surface> surface;
-    };
-    View first_surface(const Vec2& film);
+    using Cell = SliceSheet::Cell;
+
+    View centre(const Cell& cell, int x, int y);
+    /// Samples begin <= i < end, at most kBatch.
+    void add_samples(const Cell& cell, int x, int y, int begin, int end, Filtered& sum);
+    void trace(std::span<View> views);
     void add(const View& view, const SampleNumber& sample, Filtered& sum);
 
     const FrameScene& scene_;
     const Tile& tile_;
     FilmList list_;
+    std::vector<View> views_;
+    std::vector<ViewRay> rays_;
+    std::vector<Hit> hits_;
 };
 
-TileRays::View TileRays::first_surface(const Vec2& film) {
-    ++stats.view_rays;
-    const Vec3 view = scene_.camera.ray_direction(film);
-    const Vec4 world = scene_.camera.to_world({view.x(), view.y(), view.z(), 0});
-    const Hit hit = list_.nearest(scene_.placed, view, world, scene_.picture.settings, stats);
-    if (!hit) return {world, std::nullopt};
-    return {world, scene_.shading.surface(hit, Vec4::Zero(), world)};
+void TileRays::trace(std::span<View> views) {
+    stats.view_rays += views.size();
+    const Settings& settings = scene_.picture().settings;
+    hits_.resize(views.size());
+    if (scene_.is_pinhole()) {
+        for (std::size_t i = 0; i < views.size(); ++i)
+            hits_[i] = list_.nearest(views[i].instant->placed, views[i].ray.direction,
+                                     views[i].direction, settings, stats);
+    } else if (scene_.is_still()) {
+        rays_.clear();
+        for (const View& view : views) rays_.push_back(view.ray);
+        scene_.opening().view->nearest(rays_, hits_, stats);
+    } else {
+        for (std::size_t i = 0; i < views.size(); ++i)
+            views[i].instant->view->nearest({&views[i].ray, 1}, {&hits_[i], 1}, stats);
+    }
+    for (std::size_t i = 0; i < views.size(); ++i)
+        if (hits_[i])
+            views[i].surface =
+                views[i].instant->shading.surface(hits_[i], views[i].origin, views[i].direction);
+}
+
+View TileRays::centre(const Cell& cell, int x, int y) {
+    const Instant& opening = scene_.opening();
+    View view(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+    trace({&view, 1});
+    return view;
+}
+
+void TileRays::add_samples(const Cell& cell, int x, int y, int begin, int end, Filtered& sum) {
+    views_.clear();
+    for (int i = begin; i < end; ++i) {
+        const auto number = static_cast<std::uint32_t>(i);
+        const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
+        if (scene_.is_pinhole()) {
+            views_.emplace_back(scene_.opening(), scene_.opening().rays.middle(cell, film));
+            continue;
+        }
+        const auto u = Sampler(x, y, number).group(kCameraGroup);
+        const Instant& instant = scene_.at(u[3]);
+        views_.emplace_back(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
+    }
+    trace(views_);
+    for (int i = begin; i < end; ++i)
+        add(views_[static_cast<std::size_t>(i - begin)], {y, x, static_cast<std::uint32_t>(i)},
+            sum);
 }
 
 void TileRays::add(const View& view, const SampleNumber& sample, Filtered& sum) {
+    ++sum.count;
     if (view.surface) {
         sum.alpha += 1;
         sum.albedo += view.surface->albedo;
     }
-    if (!scene_.wants_color) return;
+    if (!scene_.wants_color()) return;
     const Sampler sampler(sample.x, sample.y, sample.sample);
-    const Color color = scene_.transport.radiance(view.surface, view.direction, sampler, stats);
-    if (color.isFinite().all())
-        sum.color += color;
-    else
+    const Color color =
+        view.instant->transport.radiance(view.surface, view.origin, view.direction, sampler, stats);
+    if (color.isFinite().all()) {
+        sum.color.add(color);
+    } else {
+        sum.color.add(Color::Zero());
         stats.count_invalid(sample, 1);
+    }
 }
 
-void store(const std::optional<Surface>& surface, const FrameScene& scene, Pixel& pixel) {
-    pixel.depth = std::numeric_limits<float>::infinity();
-    pixel.id = 0;
-    std::fill_n(pixel.normal, 4, 0.0f);
-    std::fill_n(pixel.position, 4, 0.0f);
-    if (!surface) return;
-    const Vec4 position = surface->point + scene.camera.origin();
+void store_view(const View& view, Pixel& pixel) {
+    if (!view.surface) return;
+    const Vec4 position = view.surface->point + view.instant->camera.origin();
     for (int i = 0; i < 4; ++i) {
-        pixel.normal[i] = static_cast<float>(surface->normal[i]);
+        pixel.normal[i] = static_cast<float>(view.surface->normal[i]);
         pixel.position[i] = static_cast<float>(position[i]);
     }
-    pixel.depth = static_cast<float>(surface->distance);
-    pixel.id = scene.placed.bodies[surface->body].id + 1;
+    pixel.depth = static_cast<float>(view.surface->distance);
+    pixel.id = view.instant->placed.bodies[view.surface->body].id + 1;
+}
+
+void store_filtered(const Filtered& sum, Pixel& pixel) {
+    if (sum.count == 0) return;
+    const Color variance = sum.color.variance();
+    for (int i = 0; i < 3; ++i) {
+        pixel.color[i] = to_half(sum.color.mean()[i]);
+        pixel.albedo[i] = to_half(sum.albedo[i] / sum.count);
+        pixel.variance[i] = static_cast<float>(variance[i]);
+    }
+    pixel.alpha = to_half(sum.alpha / sum.count);
+    pixel.samples = static_cast<std::uint32_t>(sum.count);
 }
 
 Pixel TileRays::pixel(int x, int y) {
-    const Settings& settings = scene_.picture.settings;
+    const Settings& settings = scene_.picture().settings;
     const Channels& c = settings.channels;
-    const bool filtered = scene_.wants_color || c.albedo;
-    Pixel pixel;
-    Filtered sum;
-    const bool one = settings.samples == 1;
-    if (one || c.depth || c.normal || c.position || c.id) {
-        const View view = first_surface({x + 0.5, y + 0.5});
-        store(view.surface, scene_, pixel);
-        if (one) add(view, {y, x, 0}, sum);
-    } else {
-        store(std::nullopt, scene_, pixel);
-    }
-    if (!one && filtered)
-        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(settings.samples); ++i)
-            add(first_surface(Vec2(x, y) + pixel_sample(x, y, i)), {y, x, i}, sum);
+    Pixel pixel = {};
+    pixel.depth = std::numeric_limits<float>::infinity();
+    const auto cell = scene_.sheet().cell_of(x, y);
+    if (!cell) return pixel;
 
-    const double weight = 1.0 / settings.samples;
-    for (int i = 0; i < 3; ++i) {
-        pixel.color[i] = to_half(weight * sum.color[i]);
-        pixel.albedo[i] = to_half(weight * sum.albedo[i]);
+    Filtered sum;
+    const bool one = settings.max_samples == 1;
+    if (one || c.depth || c.normal || c.position || c.id) {
+        const View view = centre(*cell, x, y);
+        store_view(view, pixel);
+        if (one) add(view, {y, x, 0}, sum);
     }
-    pixel.alpha = to_half(weight * sum.alpha);
+    const bool filtered = scene_.wants_color() || c.albedo || c.samples || c.variance;
+    const bool is_adaptive = settings.noise_target > 0 && scene_.wants_color();
+    if (!one && filtered) {
+        while (sum.count < settings.samples)
+            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, settings.samples),
+                        sum);
+        while (is_adaptive && sum.count < settings.max_samples &&
+               sum.color.noise() > settings.noise_target)
+            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, settings.max_samples),
+                        sum);
+    }
+    store_filtered(sum, pixel);
     return pixel;
 }
 
 }  // namespace
-
-FrameScene::FrameScene(const Picture& p, bool color)
-    : picture(p),
-      camera(p.camera, p.settings.width, p.settings.height),
-      placed(place_bodies(p, camera.origin())),
-      slice(slice_bounds(placed, camera, p.settings.max_distance)),
-      lights(p.lights, camera.origin()),
-      shading(p, placed, lights),
-      transport(p, placed, lights, shading),
-      wants_color(color) {}
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
     TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/path.hpp"
+#include "render/frame_scene.hpp"
 #include "render/tiles.hpp"
 
 namespace tesserae::render {
@@ -20,6 +20,8 @@ struct Pixel {
     float normal[4];        ///< world axes
     float position[4];      ///< world [m]
     std::uint32_t id;       ///< body number + 1, 0 where no body is
+    float variance[3];      ///< of the colour, as an estimate of the true mean
+    std::uint32_t samples;
 };
 
 /// A finished tile: its pixels row by row.
@@ -36,24 +38,10 @@ struct TileImage {
     }
 };
 
-/// What all tiles of a frame share.
-struct FrameScene {
-    const Picture& picture;
-    Camera camera;
-    PlacedBodies placed;
-    std::vector<SliceBounds> slice;
-    LightSet lights;
-    Shading shading;
-    LightTransport transport;
-    bool wants_color;  ///< for the image or the preview
-
-    FrameScene(const Picture& picture, bool wants_color);
-    FrameScene(const FrameScene&) = delete;  // its parts refer to each other
-};
-
 /// Renders a tile's pixels. Depth, normal, position and id are those of the ray through the pixel's
-/// centre; colour, coverage and albedo are averages over the pixel's samples, or the centre ray's
-/// where there is one sample.
+/// centre when the shutter opens; colour, coverage and albedo are averages over the pixel's
+/// samples, or the centre ray's where there is one sample. With a noise target samples are added,
+/// in batches of 16, until PixelEstimate::noise() has reached it.
 /// @throws Stopped once `stop` is set
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop);
 

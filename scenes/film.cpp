@@ -3,6 +3,7 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
@@ -60,23 +61,58 @@ std::string id_names(const Scene& scene) {
     return names.dump();
 }
 
-/// A finished frame and what decided its pixels. The next frame may look the same: a still camera
-/// over a scene at rest.
-struct Shown {
-    std::vector<Vec4> position;
-    std::vector<Rotor> rotor;
+/// What of a scene changes from frame to frame.
+struct Moment {
+    Bodies bodies;
     render::CameraDescription camera;
-    render::FrameFiles files;
 
-    bool is_same_as(const Scene& scene, const Bodies& bodies,
-                    const render::CameraDescription& other) const {
-        if (position.empty() || !(camera == other)) return false;
+    bool looks_like(const Moment& other, const Scene& scene) const {
+        if (!(camera == other.camera)) return false;
         for (BodyId id = 0; id < bodies.size(); ++id)
             if (scene.appearance[bodies.type[id]].visible &&
-                (position[id] != bodies.position[id] || !(rotor[id] == bodies.rotor[id])))
+                (bodies.position[id] != other.bodies.position[id] ||
+                 !(bodies.rotor[id] == other.bodies.rotor[id])))
                 return false;
         return true;
     }
+};
+
+/// What a frame shows: the shutter opens and, if it is open for any time, closes.
+struct Exposure {
+    Moment opening;
+    std::optional<Moment> closing;
+
+    Exposure(const Scene& scene, Poses& poses, int frame)
+        : opening(moment(scene, poses, frame_instant(scene, frame))) {
+        if (scene.camera.shutter == 0) return;
+        closing = moment(scene, poses, closing_instant(scene, frame));
+        if (closing->looks_like(opening, scene)) closing.reset();
+    }
+
+    bool looks_like(const Exposure& other, const Scene& scene) const {
+        return opening.looks_like(other.opening, scene) && !closing && !other.closing;
+    }
+    render::Picture picture(const Scene& scene) const {
+        return {opening.bodies,
+                scene.appearance,
+                scene.materials,
+                opening.camera,
+                scene.lights,
+                scene.render,
+                closing ? &closing->bodies : nullptr,
+                closing ? &closing->camera : nullptr};
+    }
+
+  private:
+    static Moment moment(const Scene& scene, Poses& poses, const FrameInstant& instant) {
+        return {poses.at(instant), camera_at(scene.camera, scene.camera_keys, instant.time)};
+    }
+};
+
+/// A finished frame. The next one may look the same: a still camera over a scene at rest.
+struct Shown {
+    Exposure exposure;
+    render::FrameFiles files;
 };
 
 }  // namespace
@@ -129,7 +165,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     info.program_version = TESSERAE_VERSION;
     info.id_names = id_names(scene);
 
-    Shown shown;
+    std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         info.frame = frames[i];
@@ -142,13 +178,10 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             progress.start_at(++report.kept);
             continue;
         }
-        const Bodies& bodies = poses.at(info.frame);
-        const render::CameraDescription camera =
-            camera_at(scene.camera, scene.camera_keys, info.time);
-        const render::Picture picture = {bodies, scene.appearance, scene.materials,
-                                         camera, scene.lights,     scene.render};
-        if (shown.is_same_as(scene, bodies, camera)) {
-            render::copy_frame(shown.files, picture, info, files);
+        Exposure exposure(scene, poses, info.frame);
+        const render::Picture picture = exposure.picture(scene);
+        if (shown && exposure.looks_like(shown->exposure, scene)) {
+            render::copy_frame(shown->files, picture, info, files);
             ++report.copied;
         } else {
             const render::FrameStats stats =
@@ -157,7 +190,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             if (!invalid.empty()) fmt::print(stderr, "tesserae: {}\n", invalid);
             report.stats += stats;
             ++report.rendered;
-            shown = {bodies.position, bodies.rotor, camera, files};
+            shown.emplace(Shown{std::move(exposure), files});
         }
         progress.update(i + 1);
     }

@@ -50,9 +50,8 @@ std::uint64_t Poses::row_of(std::uint64_t step) const {
     return at != steps.end() && *at == step ? at - steps.begin() : trajectory_->rows();
 }
 
-const Bodies& Poses::at(int frame) {
+const Bodies& Poses::at(const FrameInstant& instant) {
     if (!trajectory_) return before_;
-    const FrameInstant instant = frame_instant(scene_, frame);
     trajectory_->read_row(row_of(instant.step), before_);
     if (instant.fraction > 0) {
         trajectory_->read_row(row_of(instant.step + 1), after_);

@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
+#include "scenes/timeline.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
 
-/// The bodies' poses at frames' instants: those of the scene (a still), or interpolated between a
-/// trajectory's stored steps, positions linearly and rotors along the shortest way.
+/// The bodies' poses at the instants of frames and of their shutters: those of the scene (a still),
+/// or interpolated between a trajectory's stored steps, positions linearly and rotors along the
+/// shortest way.
 class Poses {
   public:
     /// @param frames       that will be asked for
@@ -20,7 +22,7 @@ class Poses {
           const std::filesystem::path& trajectory);
 
     /// Valid until the next call.
-    const Bodies& at(int frame);
+    const Bodies& at(const FrameInstant& instant);
 
   private:
     std::uint64_t row_of(std::uint64_t step) const;

@@ -58,7 +58,10 @@ int frame_count(const Scene& scene) {
     return std::max(count, 1);
 }
 
-FrameInstant frame_instant(const Scene& scene, int frame) {
+namespace {
+
+/// @param frame   with a fraction for instants between frames
+FrameInstant instant_of(const Scene& scene, double frame) {
     const double time = frame / scene.render.frames_per_second;
     if (!scene.physics) return {time, 0, 0};
     const double steps = frame * scene.physics->steps_per_second / scene.render.frames_per_second;
@@ -70,12 +73,23 @@ FrameInstant frame_instant(const Scene& scene, int frame) {
     return {time, static_cast<std::uint64_t>(before), steps - before};
 }
 
+}  // namespace
+
+FrameInstant frame_instant(const Scene& scene, int frame) { return instant_of(scene, frame); }
+
+FrameInstant closing_instant(const Scene& scene, int frame) {
+    return instant_of(scene, frame + scene.camera.shutter);
+}
+
 std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames) {
     std::vector<std::uint64_t> steps;
-    for (int frame : frames) {
-        const FrameInstant at = frame_instant(scene, frame);
+    const auto add = [&](const FrameInstant& at) {
         steps.push_back(at.step);
         if (at.fraction > 0) steps.push_back(at.step + 1);
+    };
+    for (int frame : frames) {
+        add(frame_instant(scene, frame));
+        if (scene.camera.shutter > 0) add(closing_instant(scene, frame));
     }
     std::sort(steps.begin(), steps.end());
     steps.erase(std::unique(steps.begin(), steps.end()), steps.end());

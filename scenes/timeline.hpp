@@ -23,6 +23,8 @@ struct FrameInstant {
     double fraction = 0;     ///< of the way to the next step, in [0, 1); 0: exactly at `step`
 };
 FrameInstant frame_instant(const Scene& scene, int frame);
+/// When the frame's shutter closes; no later than the last step.
+FrameInstant closing_instant(const Scene& scene, int frame);
 
 /// Steps that the given frames need, ascending, without repeats.
 std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames);

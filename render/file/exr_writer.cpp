@@ -68,6 +68,10 @@ std::vector<ChannelPlace> places_of(const Channels& wanted) {
                           {"P.Y", Imf::FLOAT, kPosition + 4},
                           {"P.Z", Imf::FLOAT, kPosition + 8},
                           {"P.W", Imf::FLOAT, kPosition + 12}});
+    add(wanted.variance, {{"variance.R", Imf::FLOAT, offsetof(Pixel, variance)},
+                          {"variance.G", Imf::FLOAT, offsetof(Pixel, variance) + 4},
+                          {"variance.B", Imf::FLOAT, offsetof(Pixel, variance) + 8}});
+    add(wanted.samples, {{"samples", Imf::UINT, offsetof(Pixel, samples)}});
     add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
     return places;
 }

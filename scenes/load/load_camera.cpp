@@ -105,15 +105,13 @@ void read_camera(TableReader& reader, render::CameraDescription& camera) {
     reader.read("up", camera.up, Rule::kNonZero);
     reader.read("fourth", camera.fourth, Rule::kNonZero);
     reader.read("field_of_view", camera.field_of_view, kFieldOfView);
-    const auto unbuilt = [&](const char* key, double& value, Interval interval) {
-        if (reader.read(key, value, interval)) require_built(reader, key, value == 0);
-    };
-    unbuilt("aperture", camera.aperture, {0, kLargest});
-    unbuilt("focus_distance", camera.focus_distance, {0, kLargest});
-    unbuilt("shutter", camera.shutter, {0, 1});
-    unbuilt("slice_thickness", camera.slice_thickness, {0, kLargest});
-    if (reader.read("slices", camera.slices, 1, 1000))
-        require_built(reader, "slices", camera.slices == 1);
+    reader.read("aperture", camera.aperture, Rule::kNonNegative);
+    reader.read("focus_distance", camera.focus_distance, Rule::kNonNegative);
+    reader.read("shutter", camera.shutter, Interval{0, 1});
+    reader.read("slice_thickness", camera.slice_thickness, Rule::kNonNegative);
+    if (reader.read("slices", camera.slices, 1, 1000) && camera.slices > 1 &&
+        camera.slice_thickness == 0)
+        reader.fail("slices", "expected a slice_thickness over which they are spread");
 }
 
 void write_camera(const render::CameraDescription& camera, EffectiveWriter& out) {

@@ -15,48 +15,50 @@ constexpr int kMaxBounces = 1'000'000;
 
 constexpr std::string_view kIntegrators[] = {"direct", "path"};
 constexpr std::string_view kIntersectors[] = {"trace", "analytic"};
+constexpr std::string_view kFilters[] = {"box", "triangle", "gaussian", "blackman-harris"};
+constexpr double kMaxFilterWidth = 100;
 
 struct ChannelName {
     std::string_view name;
     bool render::Channels::*member;
 };
-constexpr ChannelName kBuiltChannels[] = {
-    {"color", &render::Channels::color},   {"depth", &render::Channels::depth},
-    {"normal", &render::Channels::normal}, {"albedo", &render::Channels::albedo},
-    {"id", &render::Channels::id},         {"position", &render::Channels::position}};
-constexpr std::string_view kChannels[] = {"color", "depth",    "normal",   "albedo",
-                                          "id",    "position", "variance", "samples"};
+constexpr ChannelName kChannels[] = {{"color", &render::Channels::color},
+                                     {"depth", &render::Channels::depth},
+                                     {"normal", &render::Channels::normal},
+                                     {"albedo", &render::Channels::albedo},
+                                     {"id", &render::Channels::id},
+                                     {"position", &render::Channels::position},
+                                     {"variance", &render::Channels::variance},
+                                     {"samples", &render::Channels::samples}};
 
 void read_channels(TableReader& reader, render::Channels& channels) {
     std::vector<std::string> names;
-    if (!reader.read("channels", names, kChannels)) return;
+    std::vector<std::string_view> allowed;
+    for (const auto& [name, member] : kChannels) allowed.push_back(name);
+    if (!reader.read("channels", names, allowed)) return;
     if (names.empty()) reader.fail("channels", "expected at least one channel");
-    for (const char* later : {"variance", "samples"})
-        require_built(reader, "channels",
-                      std::find(names.begin(), names.end(), later) == names.end());
-    for (const auto& [name, member] : kBuiltChannels)
+    for (const auto& [name, member] : kChannels)
         channels.*member = std::find(names.begin(), names.end(), name) != names.end();
 }
 
 std::string channels_text(const render::Channels& channels) {
     std::string text;
-    for (const auto& [name, member] : kBuiltChannels)
+    for (const auto& [name, member] : kChannels)
         if (channels.*member) text += (text.empty() ? "" : ", ") + toml_text(name);
     return "[" + text + "]";
 }
 
-/// Features to come: checked like the others, and only their defaults pass.
-void read_unbuilt(TableReader& reader, int samples) {
-    int max_samples = samples;
-    std::string filter = "box";
-    if (reader.read("filter", filter)) require_built(reader, "filter", filter == "box");
-    double filter_width = 1, noise_target = 0;
-    if (reader.read("filter_width", filter_width, Rule::kPositive))
-        require_built(reader, "filter_width", filter_width == 1);
-    if (reader.read("noise_target", noise_target, Rule::kNonNegative))
-        require_built(reader, "noise_target", noise_target == 0);
-    if (reader.read("max_samples", max_samples, 1, kMaxSamples))
-        require_built(reader, "max_samples", max_samples == samples);
+void read_sampling(TableReader& reader, render::Settings& settings) {
+    reader.read("samples", settings.samples, 1, kMaxSamples);
+    auto filter = static_cast<std::size_t>(settings.filter);
+    reader.read("filter", filter, kFilters);
+    settings.filter = static_cast<render::FilterKind>(filter);
+    reader.read("filter_width", settings.filter_width, Interval{0, kMaxFilterWidth, true});
+    reader.read("noise_target", settings.noise_target, Rule::kNonNegative);
+    settings.max_samples = settings.samples;
+    reader.read("max_samples", settings.max_samples, 1, kMaxSamples);
+    // So that --samples alone can ask for more than the scene's most.
+    settings.max_samples = std::max(settings.samples, settings.max_samples);
 }
 
 /// Known to overrides only: a crop is a way to look at a scene, not a part of one.
@@ -85,10 +87,10 @@ void write_render(const render::Settings& s, EffectiveWriter& out) {
     out.key("max_steps", std::int64_t{s.max_steps});
     out.key("max_distance", s.max_distance);
     out.key("tile", std::int64_t{s.tile});
-    out.key("filter", "box");
-    out.key("filter_width", 1.0);
-    out.key("noise_target", 0.0);
-    out.key("max_samples", std::int64_t{s.samples});
+    out.key("filter", kFilters[static_cast<std::size_t>(s.filter)]);
+    out.key("filter_width", s.filter_width);
+    out.key("noise_target", s.noise_target);
+    out.key("max_samples", std::int64_t{s.max_samples});
     out.line("channels", channels_text(s.channels));
     out.key("exposure", s.exposure);
     // Last, and only where given: a text without it can be loaded again.
@@ -108,7 +110,7 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         s.width = static_cast<int>(size[0]);
         s.height = static_cast<int>(size[1]);
         reader.read("frames_per_second", s.frames_per_second, Rule::kPositive);
-        reader.read("samples", s.samples, 1, kMaxSamples);
+        read_sampling(reader, s);
         std::size_t integrator = 0, intersector = 0;
         reader.read("integrator", integrator, kIntegrators);
         s.integrator = static_cast<render::Integrator>(integrator);
@@ -120,7 +122,6 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         reader.read("tile", s.tile, 8, 512);
         read_channels(reader, s.channels);
         reader.read("exposure", s.exposure, Interval{-1000, 1000});
-        read_unbuilt(reader, s.samples);
         read_crop(reader, s);
         reader.finish();
     }
