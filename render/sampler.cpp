@@ -90,11 +90,9 @@ Vec2 pixel_sample(int x, int y, std::uint32_t index) {
                                        static_cast<std::uint32_t>(seed >> 32)))};
 }
 
-Sampler::Sampler(int x, int y, std::uint32_t index)
-    : pixel_(mixed(mixed(pixel_number(x, y) + kGolden))), index_(index) {}
-
 std::array<double, 4> Sampler::group(std::uint32_t group) const {
-    const std::uint64_t a = mixed(pixel_ + kGolden * group), b = mixed(a + kGolden),
+    const std::uint64_t pixel = mixed(mixed(pixel_number(x_, y_) + kGolden));
+    const std::uint64_t a = mixed(pixel + kGolden * group), b = mixed(a + kGolden),
                         c = mixed(b + kGolden);
     const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v); };
     const auto high = [](std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32); };

@@ -27,12 +27,12 @@ Vec2 pixel_sample(int x, int y, std::uint32_t index);
 /// Joe and Kuo 2008, dimensions 1 to 4.
 class Sampler {
   public:
-    Sampler(int x, int y, std::uint32_t index);
+    Sampler(int x, int y, std::uint32_t index) : x_(x), y_(y), index_(index) {}
 
     std::array<double, 4> group(std::uint32_t group) const;
 
   private:
-    std::uint64_t pixel_;
+    int x_, y_;
     std::uint32_t index_;
 };
 

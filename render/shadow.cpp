@@ -190,6 +190,7 @@ Shadows::Shadows(const PlacedBodies& placed) : placed_(placed), tree_(placed) {
 }
 
 bool Shadows::is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const {
+    if (light.limit == kMiss) return false;
     const PlacedBody& b = placed_.bodies[body];
     return (b.centre - point).norm() - b.radius > light.limit;
 }

@@ -21,9 +21,9 @@
 //   Vec4 normal(S, Vec4 p)                  its gradient, unit; a fixed choice where it has none
 //   double ray_hit(S, Vec4 o, Vec4 d)       closed form: first t >= 0 with o + t d in the shape (0
 //                                           if o is inside), kMiss if there is none; d unit
-//   double ray_exit(S, Vec4 o, Vec4 d)      closed form: last t >= 0 with o + t d in the shape, 0 if
-//                                           there is none, kMiss if it never leaves; d unit. The
-//                                           origin is in the shape or, to rounding, on its surface
+//   double ray_exit(S, Vec4 o, Vec4 d)      closed form: last t >= 0 with o + t d in the shape, 0
+//                                           if there is none, kMiss if it never leaves; d unit;
+//                                           o in the shape or, to rounding, on its surface
 //
 // No finite input gives a NaN.
 namespace tesserae {
@@ -38,7 +38,8 @@ constexpr double kMiss = std::numeric_limits<double>::infinity();
 /// hyperplane: |offset|). Tested as it stands.
 constexpr double kDistanceAccuracy = 1e-15;
 /// Error bound of ray_hit: the point that it hits lies this close to the surface, relative to
-/// |origin| plus the shape's size; so does that of ray_exit. A ray that misses stays outside, or enters by no more than this.
+/// |origin| plus the shape's size; so does that of ray_exit. A ray that misses stays outside, or
+/// enters by no more than this.
 constexpr double kRayAccuracy = 2e-15;
 
 }  // namespace tesserae

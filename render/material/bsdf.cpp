@@ -17,31 +17,31 @@ bool is_specular(const Material& m) {
            (m.kind == MaterialKind::kRough && m.roughness == 0);
 }
 
-Bsdf::Bsdf(const Surface& surface, const Vec4& out)
-    : surface_(surface),
-      frame_(surface.normal),
-      out_(frame_.to_local(out)),
-      is_rough_(surface.material->kind == MaterialKind::kRough) {}
+Bsdf::Bsdf(const Surface& surface, const Vec4& out) : surface_(surface), out_(out) {
+    if (surface.material->kind != MaterialKind::kRough) return;
+    frame_.emplace(surface.normal);
+    out_ = frame_->to_local(out);
+}
 
 Color Bsdf::value(const Vec4& in) const {
-    if (!is_rough_) return kLambert * surface_.albedo;
+    if (!frame_) return kLambert * surface_.albedo;
     const Microfacet facets(surface_.material->roughness);
-    return facets.brdf(out_, frame_.to_local(in)) * surface_.albedo;
+    return facets.brdf(out_, frame_->to_local(in)) * surface_.albedo;
 }
 
 double Bsdf::density(const Vec4& in) const {
-    if (!is_rough_) return kLambert * std::max(0.0, surface_.normal.dot(in));
-    return Microfacet(surface_.material->roughness).density(out_, frame_.to_local(in));
+    if (!frame_) return kLambert * std::max(0.0, surface_.normal.dot(in));
+    return Microfacet(surface_.material->roughness).density(out_, frame_->to_local(in));
 }
 
 Bsdf::Sample Bsdf::sample(const Uniform3& u) const {
-    if (!is_rough_) {
+    if (!frame_) {
         const Vec4 in = cosine_direction(u);
-        return {frame_.to_world(in), surface_.albedo, kLambert * in[3]};
+        return {TangentFrame(surface_.normal).to_world(in), surface_.albedo, kLambert * in[3]};
     }
     const Microfacet facets(surface_.material->roughness);
     const Vec4 in = out_[3] > 0 ? facets.sample(out_, u) : Vec4(-Vec4::UnitW());
-    Sample sample = {frame_.to_world(in), Color::Zero(), 0};
+    Sample sample = {frame_->to_world(in), Color::Zero(), 0};
     if (!(in[3] > 0)) return sample;
     sample.density = facets.density(out_, in);
     if (sample.density > 0)

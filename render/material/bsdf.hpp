@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "render/light/cap.hpp"
 #include "render/surface.hpp"
 
@@ -31,9 +33,8 @@ class Bsdf {
 
   private:
     const Surface& surface_;
-    TangentFrame frame_;
-    Vec4 out_;  ///< in the frame
-    bool is_rough_;
+    std::optional<TangentFrame> frame_;  ///< of a rough surface
+    Vec4 out_;                           ///< toward the viewer, in the frame if there is one
 };
 
 }  // namespace tesserae::render
