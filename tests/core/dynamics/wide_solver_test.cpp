@@ -93,6 +93,8 @@ TEST(WideSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 const ColourBatches& left = one.step.wide.colours.back();
                 const BatchRange& many = spheres_only ? left.round : left.general;
                 ASSERT_GT(many.end - many.begin, 4u);
+                EXPECT_EQ(one.step.wide.round_friction.empty(), friction == 0);
+                EXPECT_EQ(one.step.wide.inertias.empty(), spheres_only);
                 StagedWorld eight = one;
                 const auto work = [](StagedWorld& world, LaneCount lanes) {
                     const Simulation& simulation = world.simulation;
