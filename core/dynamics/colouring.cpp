@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
 
 namespace tesserae {
 namespace {
@@ -58,6 +60,7 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     wide.general.clear();
     wide.general_rows = 0;
     place_.clear();
+    used_.clear();
 }
 
 void Colouring::add(const Simulation& simulation, StepData& step, std::size_t island) {
@@ -113,7 +116,6 @@ std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, 
 
 void Colouring::find_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
     pairs_.clear();
-    used_.resize(step.wide.bodies.size());
     start_.assign((kColours + 1) * kKinds + 1, 0);
     const Range places = step.islands.places(island);
     const std::span<const Contact> all(step.contacts);

@@ -5,8 +5,9 @@
 
 namespace tesserae {
 
-/// Contacts from which on an island is coloured. Fewer are solved faster by one thread, and in the
-/// order of their bodies, which suits towers listed from the ground.
+/// Contacts from which on an island is coloured and solved in float, eight at a time. Fewer are
+/// solved in double, one by one, in the order of their bodies, which suits towers listed from the
+/// ground.
 constexpr std::uint32_t kColouredFrom = 1024;
 
 /// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.

@@ -10,8 +10,9 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
 
 /// Solves the contacts of one island by sequential impulses, accumulated and clamped, warm
 /// started, in the order that Islands gives: changes the velocities of its movable bodies. Touches
-/// nothing of another island. Source: E. Catto, "Iterative dynamics with temporal coherence", 2005;
-/// friction is a block of three directions instead of separate ones.
+/// nothing of another island. A coloured one is solved by solve_wide_island(). Source: E. Catto,
+/// "Iterative dynamics with temporal coherence", 2005; friction is a block of three directions
+/// instead of separate ones.
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
 
 /// Once the island's bodies have moved by the velocities that solve_island() gave them: with

@@ -48,7 +48,9 @@ class WideIsland {
     const WideStage& stage() const { return stage_; }
     Range bodies() const { return {wide_.first_body[number_], wide_.first_body[number_ + 1]}; }
 
-    /// Calls round(BatchRange, lanes) and general(BatchRange, lanes) for every colour in its turn.
+    /// Calls round(BatchRange, LaneCount) and general(BatchRange, LaneCount) for every colour in
+    /// its turn.
+    /// @return the largest result, at least 0
     template <class Executor, class Round, class General>
     double for_colours(const Executor& executor, bool backward, LaneCount lanes, const Round& round,
                        const General& general) const {
@@ -58,18 +60,23 @@ class WideIsland {
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t colour = backward ? count - 1 - i : i;
             const ColourBatches& batches = wide_.colours[first + colour];
-            const bool leftover = colour + 1 == count;
-            const auto run = [&](bool of_round) {
-                const BatchRange range = of_round ? batches.round : batches.general;
-                const auto call = [&](BatchRange piece) {
-                    const LaneCount at_once = leftover ? LaneCount::kOne : lanes;
-                    return of_round ? round(piece, at_once) : general(piece, at_once);
-                };
-                if (leftover) return OneThread{}.largest(range, 1, call);
-                return executor.largest(range, of_round ? 1 : kManifoldPoints, call);
+            const auto run_round = [&](const auto& runner, LaneCount at_once) {
+                const auto work = [&](BatchRange piece) { return round(piece, at_once); };
+                most = std::max(most, runner.largest(batches.round, 1, work));
             };
-            most = std::max(most, run(!backward));
-            most = std::max(most, run(backward));
+            const auto run_general = [&](const auto& runner, LaneCount at_once) {
+                const auto work = [&](BatchRange piece) { return general(piece, at_once); };
+                most = std::max(most, runner.largest(batches.general, kManifoldPoints, work));
+            };
+            const auto run = [&](const auto& runner, LaneCount at_once) {
+                if (!backward) run_round(runner, at_once);
+                run_general(runner, at_once);
+                if (backward) run_round(runner, at_once);
+            };
+            if (colour + 1 < count)
+                run(executor, lanes);
+            else
+                run(OneThread{}, LaneCount::kOne);  // what is left over shares bodies
         }
         return most;
     }

@@ -93,6 +93,8 @@ TEST(WideSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 const ColourBatches& left = one.step.wide.colours.back();
                 const BatchRange& many = spheres_only ? left.round : left.general;
                 ASSERT_GT(many.end - many.begin, 4u);
+                EXPECT_EQ(one.step.wide.round_friction.empty(), friction == 0);
+                EXPECT_EQ(one.step.wide.inertias.empty(), spheres_only);
                 StagedWorld eight = one;
                 const auto work = [](StagedWorld& world, LaneCount lanes) {
                     const Simulation& simulation = world.simulation;
@@ -129,8 +131,8 @@ double difference(const StepData& p, const StepData& q) {
     return largest;
 }
 
-/// Two bodies of which one may not move: the two solvers then do the same in the same order, in
-/// float and in double.
+/// Two bodies, of which one may be driven or only turn: the two solvers then do the same in the
+/// same order, in float and in double.
 struct OnePair {
     BodyType a, b;
     Vec4 b_position;
@@ -171,7 +173,8 @@ TEST(WideSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                 type.restitution = round % 3 == 0 ? 0.3 : 0;
                 const bool second = bodies.size() == 1;
                 add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0),
-                    is_bounded(type.shape) ? random_vector(random, 0.3) : Vec4(0, 0, 0, 0));
+                    is_bounded(type.shape) ? random_vector(random, 0.3) : Vec4(0, 0, 0, 0),
+                    is_bounded(type.shape) ? 0.2 * random_bivector(random) : Bivector{});
             }
             // The one-by-one solver needs several iterations to turn the slip of a sphere.
             const PhysicsSettings settings =
