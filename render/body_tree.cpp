@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <limits>
 #include <utility>
 
 #include "core/error.hpp"
@@ -278,12 +278,13 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
         }
     }
     const std::size_t index = tree_.nodes_.size();
-    TSR_ASSERT(index < BodyTree::kLeaf);
+    TSR_ASSERT(index <= std::numeric_limits<std::uint32_t>::max());
     tree_.nodes_.push_back(node);
     for (std::size_t i = 0; i < children.size(); ++i) {
         const Branch& child = *children[i];
         const std::uint32_t at = child.halves.empty() ? add_leaf(child.part) : add_node(child);
         tree_.nodes_[index].child[i] = at;
+        if (child.halves.empty()) tree_.nodes_[index].leaves |= 1u << i;
     }
     return static_cast<std::uint32_t>(index);
 }
@@ -298,7 +299,7 @@ std::uint32_t BodyTreeBuilder::add_leaf(const Part& part) {
         leaf.body[i] = m.body;
     }
     tree_.leaves_.push_back(leaf);
-    return BodyTree::kLeaf | static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
+    return static_cast<std::uint32_t>(tree_.leaves_.size() - 1);
 }
 
 BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).build(); }

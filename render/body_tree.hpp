@@ -50,8 +50,6 @@ class BodyTree {
 
   private:
     friend class BodyTreeBuilder;
-    /// Marks a child that is a leaf, not a node.
-    static constexpr std::uint32_t kLeaf = 0x80000000u;
     /// The difference of squares in a sphere's test cancels: far away a sphere counts as wider, by
     /// 1/1000 of the distance at most, which is twice what the roundings can make of it.
     static constexpr float kSquareSlack = 1e-6f;
@@ -60,7 +58,9 @@ class BodyTree {
     using Boxes = std::array<std::array<Lanes, 2>, 4>;
     struct Node {
         Boxes boxes;
-        std::array<std::uint32_t, kLanes> child;
+        std::array<std::uint32_t, kLanes> child;  ///< index of a node, or of a leaf
+        std::uint32_t leaves;                     ///< bit i is set where child i is a leaf
+        std::uint32_t unused[7];
     };
     /// Where a lane is not used the radius is no number, and nothing meets it.
     struct Leaf {
@@ -92,10 +92,11 @@ class BodyTree {
     static std::uint32_t balls_on_ray(const Leaf& leaf, const Ray& ray, float limit);
     /// Which spheres the cone may meet.
     static std::uint32_t balls_in_cone(const Leaf& leaf, const Ray& cone);
-    /// Calls visit(leaf) for the leaves that the ray meets, roughly nearest first; both may change
-    /// on the way. Ends when visit returns false.
-    template <bool kCone, class Visit>
-    void for_each_leaf(const Ray& ray, const float& limit, Visit&& visit) const;
+    /// Calls visit(body) for the bodies of leaves that the ray meets and that test(leaf), a mask of
+    /// lanes, names; nodes come roughly nearest first. Ray and limit may change on the way. Ends
+    /// when visit returns false.
+    template <bool kCone, class Test, class Visit>
+    void for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const;
 
     /// A limit as a float that is no smaller, or far: unused lanes are farther.
     static float rounded_up(double v) {
@@ -161,40 +162,50 @@ inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Ray& cone) 
            not_above(all_lanes(0), along + radius);
 }
 
-template <bool kCone, class Visit>
-void BodyTree::for_each_leaf(const Ray& ray, const float& limit, Visit&& visit) const {
+template <bool kCone, class Test, class Visit>
+void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const {
     if (nodes_.empty()) return;
     struct Waiting {
-        std::uint32_t child;
+        std::uint32_t node;
         float enter;
     };
     std::array<Waiting, kWaiting> waiting;
     std::size_t count = 0;
     for (Waiting next = {0, 0};;) {
-        if ((next.child & kLeaf) != 0) {
-            if (!visit(leaves_[next.child & ~kLeaf])) return;
-        } else {
-            const Node& node = nodes_[next.child];
-            Lanes enter;
-            std::uint32_t met = boxes_met<kCone>(node.boxes, ray, limit, enter);
-            if (met) {
-                // The nearest child is next, the others wait, the nearer ones on top.
-                const auto child = [&](std::uint32_t bits) {
-                    const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-                    return Waiting{node.child[lane], enter[lane]};
-                };
-                const std::size_t begin = count;
-                next = child(met);
-                for (met &= met - 1; met; met &= met - 1) {
-                    Waiting farther = child(met);
-                    if (farther.enter < next.enter) std::swap(farther, next);
-                    std::size_t at = count++;
-                    for (; at > begin && waiting[at - 1].enter < farther.enter; --at)
-                        waiting[at] = waiting[at - 1];
-                    waiting[at] = farther;
-                }
-                continue;
+        const Node& node = nodes_[next.node];
+        Lanes enter;
+        const std::uint32_t met = boxes_met<kCone>(node.boxes, ray, limit, enter);
+
+        // All leaves at once: most name no body, and tests that wait for nothing overlap.
+        std::uint64_t named = 0;
+        for (std::uint32_t leaves = met & node.leaves; leaves; leaves &= leaves - 1) {
+            const int lane = std::countr_zero(leaves);
+            const Leaf& leaf = leaves_[node.child[static_cast<std::size_t>(lane)]];
+            named |= std::uint64_t{test(leaf)} << (lane * kLanes);
+        }
+        for (; named; named &= named - 1) {
+            const auto at = static_cast<std::size_t>(std::countr_zero(named));
+            if (!visit(leaves_[node.child[at / kLanes]].body[at % kLanes])) return;
+        }
+
+        // The nearest node is next, the others wait, the nearer ones on top.
+        std::uint32_t nodes = met & ~node.leaves;
+        if (nodes) {
+            const auto child = [&](std::uint32_t bits) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+                return Waiting{node.child[lane], enter[lane]};
+            };
+            const std::size_t begin = count;
+            next = child(nodes);
+            for (nodes &= nodes - 1; nodes; nodes &= nodes - 1) {
+                Waiting farther = child(nodes);
+                if (farther.enter < next.enter) std::swap(farther, next);
+                std::size_t at = count++;
+                for (; at > begin && waiting[at - 1].enter < farther.enter; --at)
+                    waiting[at] = waiting[at - 1];
+                waiting[at] = farther;
             }
+            if (next.enter <= limit) continue;
         }
         do {
             if (count == 0) return;
@@ -208,13 +219,13 @@ void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const 
                                Visit&& visit) const {
     const Ray ray = ray_of(origin, direction, {0, 1});
     float reach = rounded_up(limit);
-    for_each_leaf<false>(ray, reach, [&](const Leaf& leaf) {
-        for (std::uint32_t met = balls_on_ray(leaf, ray, reach); met; met &= met - 1) {
-            if (!visit(leaf.body[static_cast<std::size_t>(std::countr_zero(met))])) return false;
+    for_each_body<false>(
+        ray, reach, [&](const Leaf& leaf) { return balls_on_ray(leaf, ray, reach); },
+        [&](std::uint32_t body) {
+            const bool goes_on = visit(body);
             reach = rounded_up(limit);
-        }
-        return true;
-    });
+            return goes_on;
+        });
 }
 
 template <class Visit>
@@ -223,15 +234,16 @@ void BodyTree::for_each_in_cone(const Vec4& apex, const Vec4& direction, const C
     Ray ray = ray_of(apex, direction, cone);
     double sine = cone.sine;
     const float reach = rounded_up(kMiss);
-    for_each_leaf<true>(ray, reach, [&](const Leaf& leaf) {
-        for (std::uint32_t met = balls_in_cone(leaf, ray); met; met &= met - 1)
-            if (!visit(leaf.body[static_cast<std::size_t>(std::countr_zero(met))])) return false;
-        if (cone.sine != sine) {
-            ray = ray_of(apex, direction, cone);
-            sine = cone.sine;
-        }
-        return true;
-    });
+    for_each_body<true>(
+        ray, reach, [&](const Leaf& leaf) { return balls_in_cone(leaf, ray); },
+        [&](std::uint32_t body) {
+            const bool goes_on = visit(body);
+            if (cone.sine != sine) {
+                ray = ray_of(apex, direction, cone);
+                sine = cone.sine;
+            }
+            return goes_on;
+        });
 }
 
 }  // namespace tesserae::render
