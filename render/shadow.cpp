@@ -88,6 +88,24 @@ double least_ratio(const Evaluate& f, double reach, const Cone& cone) {
     return upper;
 }
 
+/// Whether the cone about a ray may meet a box about the origin. Along every axis the cone is no
+/// wider than rays of slopes d - tan and d + tan, so that each side of the box bounds the distances
+/// at which the cone can be beyond it.
+bool may_meet_box(const Vec4& half, const Vec4& origin, const Vec4& direction, const Cone& cone) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    const double tangent = cone.sine / cone.cosine;
+    const Eigen::Array4d most = direction.array() + tangent, least = direction.array() - tangent;
+    const Eigen::Array4d low = (-half - origin).array() / most;
+    const Eigen::Array4d high = (half - origin).array() / least;
+    const Eigen::Array4d none = Eigen::Array4d::Constant(kInfinite);
+    const double first = std::max((most > 0).select(low, -none).maxCoeff(),
+                                  (least < 0).select(high, -none).maxCoeff());
+    const double last = std::min((most < 0).select(low, none).minCoeff(),
+                                 (least > 0).select(high, none).minCoeff());
+    // Wide of rounding: at worst a search more.
+    return last >= 0 && first <= last + 1e-9 * (last + origin.norm());
+}
+
 template <class S>
 double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, double radius,
                    const Cone& cone, FrameStats& stats) {
@@ -97,6 +115,8 @@ double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, do
         return Sample{t, signed_distance(shape, point), normal(shape, point).dot(direction)};
     };
     if constexpr (S::kBounded) {
+        const Vec4 half = half_extents(shape, Mat4::Identity());
+        if (!may_meet_box(half, origin, direction, cone)) return 1;
         return least_ratio(f, (origin.norm() + radius) / cone.cosine * (1 + 1e-9), cone);
     } else {
         // A half-space: f is linear, and f/t falls toward its slope.
@@ -159,7 +179,8 @@ bool Shadows::is_hidden(const SunDisc& sun, const Vec4& point, std::uint32_t on,
     };
     for (std::uint32_t body : unbounded_)
         if (!clears(body)) return true;
-    tree_.for_each_in_cone(point, sun.toward, sun.cone, clears);
+    const double limit = kMiss;
+    tree_.for_each_on_ray(point, sun.toward, limit, clears);
     return hidden;
 }
 
