@@ -4,15 +4,16 @@
 #   bash bench/run.sh              all parts, about an hour
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
+#   bash bench/run.sh rays         view, shadow and bounce rays
 #   bash bench/run.sh extremes     stiff and extreme scenes
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed extremes bullet peers)
+parts=(accuracy speed rays extremes bullet peers)
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | extremes | bullet | peers) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | extremes | bullet | peers]" >&2
+    case $1 in accuracy | speed | rays | extremes | bullet | peers) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | rays | extremes | bullet | peers]" >&2
         exit 2
         ;;
     esac
@@ -57,6 +58,12 @@ speed() {
     head_of speed "$1"
     /usr/bin/python3 -B "$root/bench/report.py" "$raw/head.txt" "$raw/hot_loops.json" \
         "$raw"/contacts_{double,float}.json "$results"
+}
+
+rays() {
+    "$folder/bench/rays" >"$raw/rays.csv"
+    head_of rays "$1"
+    cat "$raw/head.txt" "$raw/rays.csv" >"$results/rays.csv"
 }
 
 extremes() {
