@@ -86,7 +86,7 @@ class Rays {
     double sample(int ray, int x, int y, int index) {
         const auto i = static_cast<std::size_t>(ray);
         const render::Sampler sampler(x, y, static_cast<std::uint32_t>(index));
-        return transport_.radiance(surfaces_[i], directions_[i], sampler, stats_)[0];
+        return transport_.radiance(surfaces_[i], Vec4::Zero(), directions_[i], sampler, stats_)[0];
     }
 
     /// The mean of a pixel's samples, or of the first samples of as many pixels: independent ones.

@@ -46,7 +46,7 @@ struct TracedScene {
     }
 
     Color radiance(const Vec4& direction, const Sampler& sampler) const {
-        return transport.radiance(first(direction), direction, sampler, stats);
+        return transport.radiance(first(direction), Vec4::Zero(), direction, sampler, stats);
     }
 };
 
