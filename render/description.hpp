@@ -114,7 +114,7 @@ struct Settings {
     FilterKind filter = FilterKind::kBox;
     double filter_width = 1;  ///< of its support [pixels]
     double noise_target = 0;  ///< see PixelEstimate::noise(); 0: every pixel has `samples`
-    int max_samples = 16;     ///< at least `samples`
+    int max_samples = 16;     ///< with a noise target
     Channels channels;
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;

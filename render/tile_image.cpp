@@ -170,23 +170,20 @@ Pixel TileRays::pixel(int x, int y) {
     const auto cell = scene_.sheet().cell_of(x, y);
     if (!cell) return pixel;
 
+    const bool is_adaptive = settings.noise_target > 0 && scene_.wants_color();
+    const int least = settings.samples;
+    const int most = is_adaptive ? std::max(least, settings.max_samples) : least;
     Filtered sum;
-    const bool one = settings.max_samples == 1;
-    if (one || c.depth || c.normal || c.position || c.id) {
+    if (most == 1 || c.depth || c.normal || c.position || c.id) {
         const View view = centre(*cell, x, y);
         store_view(view, pixel);
-        if (one) add(view, {y, x, 0}, sum);
+        if (most == 1) add(view, {y, x, 0}, sum);
     }
-    const bool filtered = scene_.wants_color() || c.albedo || c.samples || c.variance;
-    const bool is_adaptive = settings.noise_target > 0 && scene_.wants_color();
-    if (!one && filtered) {
-        while (sum.count < settings.samples)
-            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, settings.samples),
-                        sum);
-        while (is_adaptive && sum.count < settings.max_samples &&
-               sum.color.noise() > settings.noise_target)
-            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, settings.max_samples),
-                        sum);
+    if (most > 1 && (scene_.wants_color() || c.albedo || c.samples || c.variance)) {
+        while (sum.count < least)
+            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, least), sum);
+        while (sum.count < most && sum.color.noise() > settings.noise_target)
+            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, most), sum);
     }
     store_filtered(sum, pixel);
     return pixel;

@@ -107,7 +107,7 @@ Image read_exr(const std::filesystem::path& path) {
     };
     const Imf::ChannelList& channels = file.header().channels();
     for (auto c = channels.begin(); c != channels.end(); ++c) {
-        if (c.channel().type == Imf::UINT) {
+        if (std::string(c.name()) == "objectid") {
             image.ids.resize(count);
             attach(c.name(), Imf::UINT, image.ids.data());
         } else {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -20,10 +21,15 @@ struct TestScene {
     CameraDescription camera;
     Lights lights;
     Settings settings;
+    std::optional<Bodies> closing;  ///< poses when the shutter closes
 
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
                std::uint32_t material = 0);
-    Picture picture() const { return {bodies, appearance, materials, camera, lights, settings}; }
+    Picture picture() const {
+        Picture picture = {bodies, appearance, materials, camera, lights, settings};
+        if (closing) picture.closing = &*closing, picture.closing_camera = &camera;
+        return picture;
+    }
 };
 
 using Random = std::mt19937_64;

@@ -210,9 +210,11 @@ const std::vector<Broken>& broken_scenes() {
         {"[[light]]\ntype = \"sphere\"\nposition = [0, 1, 0, 0]\nradius = 0\n",
          "4:10",
          {"radius = 0"}},
-        // Known, not built yet; a wrong type comes first.
         {"[[material]]\nname = \"a\"\nior = 1\n", "3:7", {"> 1"}},
-        {"[camera]\naperture = 0.1\n", "2:12", {"not yet"}},
+        {"[camera]\naperture = -0.1\n", "2:12", {"aperture = -0.1", ">= 0"}},
+        {"[camera]\nshutter = 1.5\n", "2:11", {"shutter = 1.5"}},
+        {"[camera]\nslices = 4\n", "2:10", {"slice_thickness"}},
+        {"[camera]\nslices = 1001\nslice_thickness = 1\n", "2:10", {"1 to 1000"}},
         {"[camera]\n[[camera.key]]\nup = [0, 1, 0, 0]\n", "2:1", {"time is missing"}},
         {"[camera]\n[[camera.key]]\ntime = 1\n", "2:1", {"expected position, look_at, up"}},
         {"[camera]\n[[camera.key]]\ntime = 1\nup = [0, 1, 0, 0]\n"
@@ -223,8 +225,10 @@ const std::vector<Broken>& broken_scenes() {
          "[[camera.key]]\ntime = 2\nup = [0, -2, 0, 0]\n",
          "7:6",
          {"opposite to the last key's"}},
-        {"[render]\nfilter = \"gauss\"\n", "2:10", {"not yet"}},
-        {"[render]\nchannels = [\"variance\"]\n", "2:12", {"not yet"}},
+        {"[render]\nfilter = \"gausian\"\n", "2:10", {"did you mean \"gaussian\"?"}},
+        {"[render]\nfilter_width = 0\n", "2:16", {"filter_width = 0"}},
+        {"[render]\nnoise_target = -1\n", "2:16", {"noise_target = -1"}},
+        {"[render]\nmax_samples = 0\n", "2:15", {"1 to 1048576"}},
     };
     return kScenes;
 }
