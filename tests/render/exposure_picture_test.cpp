@@ -150,8 +150,12 @@ TestScene everything() {
                   random_rotor(random));
     scene.closing = scene.bodies;
     for (Vec4& position : scene.closing->position) position += random_vector(random, 0.1);
-    scene.lights.suns.push_back({});
-    scene.lights.sky = Color::Constant(0.2);
+    // Bright bodies before a dark sky: their edges are noisy.
+    Sun sun;
+    sun.direction = (scene.camera.look_at - scene.camera.position).normalized();
+    sun.irradiance = Color::Constant(6);
+    scene.lights.suns.push_back(sun);
+    scene.lights.sky = Color::Constant(0.01);
     scene.settings.width = 48, scene.settings.height = 36;
     scene.settings.samples = 8;
     scene.settings.max_samples = 64;
