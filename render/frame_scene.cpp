@@ -6,10 +6,10 @@
 namespace tesserae::render {
 namespace {
 
-/// A frame holds at most so many bodies at all its instants (some 300 bytes each), but two instants
-/// of any scene.
-constexpr std::size_t kMostBodies = 4'000'000;
-constexpr int kMostInstants = 64;
+/// A frame holds at most so many bodies, summed over its instants (some 300 bytes each), but two
+/// instants of any scene.
+constexpr std::size_t kMostBodies = 1'000'000;
+constexpr std::size_t kMostInstants = 64;
 
 CameraDescription between(const CameraDescription& a, const CameraDescription& b, double part) {
     if (a == b) return a;
@@ -56,9 +56,9 @@ double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
 
 int instant_count(const Picture& picture, const Camera& camera) {
     if (picture.closing == nullptr) return 1;
-    const int most =
-        std::clamp(static_cast<int>(kMostBodies / std::max<std::size_t>(1, picture.bodies.size())),
-                   2, std::min(kMostInstants, std::max(2, picture.settings.samples)));
+    const int samples =
+        picture.settings.noise_target > 0 ? picture.settings.max_samples : picture.settings.samples;
+    const int most = most_instants(picture.bodies.size(), samples);
     if (!(picture.camera == *picture.closing_camera)) return most;
     double pixels = 0;
     for (BodyId id = 0; id < picture.bodies.size(); ++id)
@@ -68,6 +68,13 @@ int instant_count(const Picture& picture, const Camera& camera) {
 }
 
 }  // namespace
+
+int most_instants(std::size_t bodies, int samples) {
+    const std::size_t fit =
+        std::max<std::size_t>(2, kMostBodies / std::max<std::size_t>(1, bodies));
+    return static_cast<int>(std::min(
+        {kMostInstants, fit, std::max<std::size_t>(2, static_cast<std::size_t>(samples))}));
+}
 
 Instant::Instant(const Picture& picture, const CameraDescription& d, const SliceSheet& sheet,
                  const Bodies& bodies)

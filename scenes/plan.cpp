@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "render/frame.hpp"
-#include "render/material/bsdf.hpp"
+#include "render/frame_scene.hpp"
 #include "scenes/memory.hpp"
+#include "scenes/plan_picture.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
@@ -40,11 +40,6 @@ bool any_motion(const Scene& scene) {
         if (bodies.is_movable(id) && bodies.size() > 1) return true;
     }
     return false;
-}
-
-std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
-    return std::count_if(bodies.type.begin(), bodies.type.end(),
-                         [&](std::uint32_t type) { return predicate(type); });
 }
 
 /// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
@@ -87,64 +82,6 @@ void decide_physics(const Scene& scene, Plan& plan) {
     if (plan.moves) decide_solver(*scene.physics, plan);
 }
 
-std::string light_counts(const render::Lights& lights) {
-    std::string text;
-    const auto add = [&](std::size_t count, const char* name) {
-        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
-    };
-    add(lights.suns.size(), "sun(s)");
-    add(lights.points.size(), "point light(s)");
-    add(lights.spheres.size(), "sphere light(s)");
-    return text;
-}
-
-/// @param visible   how many bodies are
-void decide_light(const Scene& scene, std::uint64_t visible, Plan& plan) {
-    const render::Lights& lights = scene.lights;
-    const bool is_path = scene.render.integrator == render::Integrator::kPath;
-    const std::string counts = light_counts(lights);
-    plan.decisions.push_back(
-        {"shadow rays", !counts.empty() && visible > 1,
-         counts.empty()
-             ? (is_path ? "no light but the sky, which bounced rays find"
-                        : "no light but the sky, which is taken unoccluded")
-             : (visible > 1 ? counts : "nothing is there to cast a shadow on another body")});
-    plan.decisions.push_back(
-        {"global illumination", is_path,
-         is_path ? fmt::format("integrator = \"path\": emitted and direct light and {} bounce(s)",
-                               scene.render.bounces)
-                 : "integrator = \"direct\""});
-    if (is_path) return;
-
-    // Diffuse and rough surfaces end a ray of the direct picture.
-    const auto reflects = count_if_type(scene.bodies, [&](auto t) {
-        const render::Appearance& a = scene.appearance[t];
-        return a.visible && render::is_specular(scene.materials[a.material]);
-    });
-    plan.decisions.push_back({"reflected and refracted rays", reflects > 0,
-                              reflects > 0
-                                  ? fmt::format("{} bodies of mirror or glass, {} bounce(s)",
-                                                reflects, scene.render.bounces)
-                                  : "nothing is a mirror or glass"});
-}
-
-void decide_picture(const Scene& scene, Plan& plan) {
-    const Bodies& bodies = scene.bodies;
-    const auto visible = count_if_type(bodies, [&](auto t) { return scene.appearance[t].visible; });
-    if (visible < plan.bodies)
-        plan.decisions.push_back(
-            {"invisible bodies in the picture", false,
-             fmt::format("{} bodies have visible = false", plan.bodies - visible)});
-    decide_light(scene, visible, plan);
-    const render::Channels& c = scene.render.channels;
-    const auto channel = [&](bool wanted, const char* name) {
-        if (!wanted)
-            plan.decisions.push_back({fmt::format("channel {}", name), false, "not in channels"});
-    };
-    channel(c.color, "color"), channel(c.depth, "depth"), channel(c.normal, "normal");
-    channel(c.albedo, "albedo"), channel(c.id, "id"), channel(c.position, "position");
-}
-
 }  // namespace
 
 Plan make_plan(const Scene& scene, int threads) {
@@ -163,7 +100,8 @@ Plan make_plan(const Scene& scene, int threads) {
     const render::Crop crop = r.crop.value_or(render::Crop{0, 0, r.width, r.height});
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
     // With several samples a pixel's centre has a ray of its own, for depth, normal and id.
-    const std::uint64_t rays = r.samples == 1 ? 1 : r.samples + 1;
+    const std::uint64_t samples = r.noise_target > 0 ? r.max_samples : r.samples;
+    const std::uint64_t rays = samples == 1 ? 1 : samples + 1;
     plan.view_rays = pixels * rays * plan.frames;
     const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;
     const std::uint64_t movable_spheres = count_if_type(scene.bodies, [&](std::uint32_t type) {
@@ -174,6 +112,9 @@ Plan make_plan(const Scene& scene, int threads) {
         kProgramBytes + scene.source.size() + scene.effective.size() +
         plan.bodies * (kStates * kStateBytes + kPictureBytes) + movable_spheres * kSphereStepBytes +
         (plan.movable_bodies - movable_spheres) * kStepBytes + 4 * threads * tile * kPixelBytes;
+    if (scene.camera.shutter > 0)
+        plan.memory_bytes += kPictureBytes * plan.bodies *
+                             render::most_instants(plan.bodies, static_cast<int>(samples));
     if (plan.moves) plan.trajectory_bytes = 2 * plan.frames * plan.bodies * kStateBytes;
 
     decide_physics(scene, plan);

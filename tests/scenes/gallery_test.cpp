@@ -1,15 +1,30 @@
 // The gallery's scenes show what they say they show.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
 #include <set>
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/world.hpp"
 #include "scenes/load/load.hpp"
+#include "scenes/plan.hpp"
 
 namespace tesserae::scenes {
 namespace {
+
+TEST(Gallery, EverySceneLoadsAndSaysWhatItNeeds) {
+    int count = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(TESSERAE_SOURCE_DIR "/scenes/gallery")) {
+        if (entry.path().extension() != ".toml") continue;
+        const Scene scene = load_scene(entry.path(), {});
+        EXPECT_EQ(scene.name, entry.path().stem());
+        EXPECT_GT(make_plan(scene, 1).view_rays, 0u);
+        ++count;
+    }
+    EXPECT_GE(count, 8);
+}
 
 using Kinds = std::set<std::string>;
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <algorithm>
+
+#include "scenes/plan.hpp"
+
+namespace tesserae::scenes {
+
+/// How many bodies have a type for which predicate(type) holds.
+inline std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
+    return std::count_if(bodies.type.begin(), bodies.type.end(),
+                         [&](std::uint32_t type) { return predicate(type); });
+}
+
+/// Appends what the picture needs and what is left out of it.
+void decide_picture(const Scene& scene, Plan& plan);
+
+}  // namespace tesserae::scenes
