@@ -91,6 +91,9 @@ enum class Intersector { kTrace, kAnalytic };
 /// See PixelFilter.
 enum class FilterKind { kBox, kTriangle, kGaussian, kBlackmanHarris };
 
+/// Of image files; all lossless.
+enum class Compression { kNone, kRle, kZips, kZip, kPiz };
+
 /// Half open, in pixels from the top left.
 struct Crop {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -116,6 +119,7 @@ struct Settings {
     double noise_target = 0;  ///< see PixelEstimate::noise(); 0: every pixel has `samples`
     int max_samples = 16;     ///< with a noise target
     Channels channels;
+    Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;
 };

@@ -76,6 +76,23 @@ std::vector<ChannelPlace> places_of(const Channels& wanted) {
     return places;
 }
 
+Imf::Compression compression_of(Compression compression) {
+    switch (compression) {
+        case Compression::kNone:
+            return Imf::NO_COMPRESSION;
+        case Compression::kRle:
+            return Imf::RLE_COMPRESSION;
+        case Compression::kZips:
+            return Imf::ZIPS_COMPRESSION;
+        case Compression::kZip:
+            return Imf::ZIP_COMPRESSION;
+        case Compression::kPiz:
+            return Imf::PIZ_COMPRESSION;
+    }
+    TSR_ASSERT(false);
+    return Imf::ZIP_COMPRESSION;
+}
+
 std::string exact(const Vec4& v) {
     return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", v[0], v[1], v[2], v[3]);
 }
@@ -85,7 +102,7 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     const Imath::Box2i display({0, 0}, {settings.width - 1, settings.height - 1});
     const Imath::Box2i data({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1});
     Imf::Header header(display, data);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = compression_of(settings.compression);
     header.lineOrder() = Imf::RANDOM_Y;
     const auto side = static_cast<unsigned>(settings.tile);
     header.setTileDescription(Imf::TileDescription(side, side, Imf::ONE_LEVEL));

@@ -16,6 +16,7 @@ constexpr int kMaxBounces = 1'000'000;
 constexpr std::string_view kIntegrators[] = {"direct", "path"};
 constexpr std::string_view kIntersectors[] = {"trace", "analytic"};
 constexpr std::string_view kFilters[] = {"box", "triangle", "gaussian", "blackman-harris"};
+constexpr std::string_view kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
 constexpr double kMaxFilterWidth = 100;
 
 struct ChannelName {
@@ -92,6 +93,7 @@ void write_render(const render::Settings& s, EffectiveWriter& out) {
     out.key("noise_target", s.noise_target);
     out.key("max_samples", std::int64_t{s.max_samples});
     out.line("channels", channels_text(s.channels));
+    out.key("compression", kCompressions[static_cast<std::size_t>(s.compression)]);
     out.key("exposure", s.exposure);
     // Last, and only where given: a text without it can be loaded again.
     if (s.crop)
@@ -121,6 +123,9 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         reader.read("max_distance", s.max_distance, Rule::kPositive);
         reader.read("tile", s.tile, 8, 512);
         read_channels(reader, s.channels);
+        auto compression = static_cast<std::size_t>(s.compression);
+        reader.read("compression", compression, kCompressions);
+        s.compression = static_cast<render::Compression>(compression);
         reader.read("exposure", s.exposure, Interval{-1000, 1000});
         read_crop(reader, s);
         reader.finish();

@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -93,6 +94,26 @@ TEST(Frame, TileSizeChangesNoPixel) {
         expect_same_pixels(read_exr(folder / "b.exr"), whole);
         EXPECT_EQ(bytes_of(folder / "b.png"), bytes_of(folder / "a.png")) << tile;
     }
+}
+
+TEST(Frame, CompressionChangesTheFileAndNoPixel) {
+    TestScene scene = busy_scene();
+    const Folder folder;
+    scene.settings.compression = Compression::kNone;
+    render(scene, folder / "none.exr");
+    const Image none = read_exr(folder / "none.exr");
+    std::set<std::string> files = {bytes_of(folder / "none.exr")};
+    for (const auto compression :
+         {Compression::kRle, Compression::kZips, Compression::kZip, Compression::kPiz}) {
+        scene.settings.compression = compression;
+        render(scene, folder / "small.exr");
+        const Image small = read_exr(folder / "small.exr");
+        EXPECT_EQ(small.planes, none.planes);
+        EXPECT_EQ(small.ids, none.ids);
+        EXPECT_LT(bytes_of(folder / "small.exr").size(), bytes_of(folder / "none.exr").size());
+        files.insert(bytes_of(folder / "small.exr"));
+    }
+    EXPECT_EQ(files.size(), 5u);
 }
 
 TEST(Frame, CropIsAPartOfTheWhole) {
