@@ -9,12 +9,14 @@
 #   bash bench/run.sh light        error of the traced light against samples, a minute
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
+#   bash bench/run.sh scaling      the stages of a step against bodies and threads, an hour
+#   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed rays extremes light bullet peers)
+parts=(accuracy speed rays extremes light bullet peers scaling)
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | rays | extremes | light | bullet | peers) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | rays | extremes | light | bullet | peers]" >&2
+    case $1 in accuracy | speed | rays | extremes | light | bullet | peers | scaling | scaling-million) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | rays | extremes | light | bullet | peers | scaling | scaling-million]" >&2
         exit 2
         ;;
     esac
@@ -98,6 +100,33 @@ peers() {
     head_of peers "$1"
     cat "$raw/head.txt" "$raw/peers.csv" >"$results/peers.csv"
 }
+
+# scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: every configuration three times, one after the
+# other, so that what else happens on the machine falls on all.
+scale() {
+    local part=$1 load_before=$2 repeat threads scene count settle steps
+    shift 2
+    for repeat in 1 2 3; do
+        for configuration in "$@"; do
+            IFS=, read -r scene count settle steps <<<"$configuration"
+            for threads in 1 2; do
+                "$folder/bench/scaling" "$scene" "$count" "$threads" "$settle" "$steps"
+            done
+        done
+    done | awk 'NR == 1 || !/^scene,/' >"$raw/$part.csv"
+    head_of "$part" "$load_before"
+    /usr/bin/python3 -B "$root/bench/report_scaling.py" "$raw/head.txt" "$raw/$part.csv" "$results/$part"
+}
+
+scaling() {
+    local scene configurations=()
+    for scene in gas pile boxes stacks pyramid; do
+        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,20" "$scene,100000,120,5")
+    done
+    scale scaling "$1" "${configurations[@]}"
+}
+
+scaling-million() { scale scaling-million "$1" gas,1000000,5,3 pile,1000000,45,3; }
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2

@@ -15,11 +15,14 @@ constexpr std::uint32_t kContactsOfMessage = 32;
 }  // namespace
 
 struct IslandGraph::Graph {
-    /// Places in `order`.
-    using Message = Range;
+    struct Message {
+        std::size_t begin, end;  ///< places in `order`
+        std::uint32_t contacts;
+    };
 
     Graph()
         : node(graph, tbb::flow::unlimited, [this](const Message& message) {
+              const Trace::Span span(trace, kIslandsSpan, message.contacts);
               for (std::size_t i = message.begin; i < message.end; ++i) {
                   const std::uint32_t island = order[i];
                   Work* const work = step->islands.is_coloured(island) ? of_coloured : of_plain;
@@ -31,6 +34,7 @@ struct IslandGraph::Graph {
     const Simulation* simulation = nullptr;
     StepData* step = nullptr;
     Work *of_plain = nullptr, *of_coloured = nullptr;
+    Trace* trace = nullptr;
     std::vector<std::uint32_t> order;  ///< islands, by falling size, then number
     tbb::flow::graph graph;
     tbb::flow::function_node<Message> node;
@@ -40,8 +44,9 @@ IslandGraph::IslandGraph() : graph_(std::make_unique<Graph>()) {}
 IslandGraph::~IslandGraph() = default;
 
 void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_plain,
-                      Work& of_coloured) {
+                      Work& of_coloured, Trace* trace) {
     Graph& g = *graph_;
+    g.trace = trace;
     g.of_plain = &of_plain;
     g.of_coloured = &of_coloured;
     g.simulation = &simulation;
@@ -56,12 +61,11 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
     });
 
     for (std::size_t begin = 0; begin < g.order.size();) {
-        std::size_t end = begin;
-        for (std::uint32_t contacts = 0; end < g.order.size() && contacts < kContactsOfMessage;
-             ++end)
-            contacts += size(g.order[end]);
-        g.node.try_put({begin, end});
-        begin = end;
+        Graph::Message message{begin, begin, 0};
+        while (message.end < g.order.size() && message.contacts < kContactsOfMessage)
+            message.contacts += size(g.order[message.end++]);
+        g.node.try_put(message);
+        begin = message.end;
     }
     g.graph.wait_for_all();
 }

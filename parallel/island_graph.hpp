@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/dynamics/step_data.hpp"
+#include "parallel/trace.hpp"
 
 namespace tesserae::parallel {
 
@@ -20,8 +21,9 @@ class IslandGraph {
 
     /// Of one island: core's solve_island() or relax_island(), and their like for coloured ones.
     using Work = void(const Simulation&, StepData&, std::size_t island);
-    /// Does the work for all islands of the step.
-    void run(const Simulation& simulation, StepData& step, Work& of_plain, Work& of_coloured);
+    /// Does the work for all islands of the step; every message is a span of the trace.
+    void run(const Simulation& simulation, StepData& step, Work& of_plain, Work& of_coloured,
+             Trace* trace = nullptr);
 
   private:
     struct Graph;

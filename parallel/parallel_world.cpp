@@ -11,6 +11,7 @@
 #include "parallel/coloured_island.hpp"
 #include "parallel/island_graph.hpp"
 #include "parallel/kept_pairs.hpp"
+#include "parallel/trace.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -57,6 +58,7 @@ void ParallelWorld::forget_hints() {
 }
 
 void ParallelWorld::advance_first_half() {
+    const Trace::Span span(trace_, "advance_first_half", simulation_.bodies.size());
     for_each_range(simulation_.bodies.size(), kBodyGrain,
                    [&](Range bodies) { tesserae::advance_first_half(simulation_, step_, bodies); });
     require_finite();
@@ -64,6 +66,7 @@ void ParallelWorld::advance_first_half() {
 
 void ParallelWorld::find_pairs() {
     const std::size_t count = simulation_.bodies.size();
+    const Trace::Span span(trace_, "find_pairs", count);
     if (step_.substep > 0 && !any_range(count, kBodyGrain, [&](Range bodies) {
             return outgrows_bounds(simulation_, step_, bodies);
         }))
@@ -74,6 +77,7 @@ void ParallelWorld::find_pairs() {
 }
 
 void ParallelWorld::find_contacts() {
+    const Trace::Span span(trace_, "find_contacts", step_.pairs.size());
     for (bool look = true; look;) {
         stages_->contacts.collect(
             step_.pairs.size(), kPairGrain,
@@ -92,25 +96,32 @@ void ParallelWorld::find_contacts() {
 }
 
 void ParallelWorld::integrate_velocities() {
+    const Trace::Span span(trace_, "integrate_velocities", simulation_.bodies.size());
     for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::integrate_velocities(simulation_, step_, bodies);
     });
 }
 
-void ParallelWorld::build_islands() { stages_->island_builder.build(simulation_, step_); }
+void ParallelWorld::build_islands() {
+    const Trace::Span span(trace_, "build_islands", step_.contacts.size());
+    stages_->island_builder.build(simulation_, step_);
+}
 
 void ParallelWorld::solve_islands() {
-    stages_->island_graph.run(simulation_, step_, solve_island, solve_coloured_island);
+    const Trace::Span span(trace_, "solve_islands", step_.islands.size());
+    stages_->island_graph.run(simulation_, step_, solve_island, solve_coloured_island, trace_);
 }
 
 void ParallelWorld::advance_second_half() {
+    const Trace::Span span(trace_, "advance_second_half", simulation_.bodies.size());
     for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::advance_second_half(simulation_, step_, bodies);
     });
 }
 
 void ParallelWorld::relax_islands() {
-    stages_->island_graph.run(simulation_, step_, relax_island, relax_coloured_island);
+    const Trace::Span span(trace_, "relax_islands", step_.islands.size());
+    stages_->island_graph.run(simulation_, step_, relax_island, relax_coloured_island, trace_);
     stages_->pushing.collect(
         step_.impulses.size(), kContactGrain,
         [&](Range contacts, std::vector<ContactImpulse>& list) {
@@ -128,6 +139,7 @@ void ParallelWorld::require_finite() const {
 }
 
 StepReport ParallelWorld::finish_step() {
+    const Trace::Span span(trace_, "finish_step", step_.contacts.size());
     require_finite();
     return commit_step(simulation_, step_);
 }

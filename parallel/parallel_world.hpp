@@ -6,6 +6,8 @@
 
 namespace tesserae::parallel {
 
+class Trace;
+
 /// core's World on several threads: the same stages, the same functions of core, the same bits at
 /// any number of threads.
 class ParallelWorld {
@@ -22,6 +24,10 @@ class ParallelWorld {
 
     /// Drops what is kept to make the next step faster. It changes no result.
     void forget_hints();
+
+    /// From the next step on every stage is a span of the trace, under its name, and so is every
+    /// message of islands. Null ends that. Changes no result.
+    void set_trace(Trace* trace) { trace_ = trace; }
 
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
@@ -44,6 +50,7 @@ class ParallelWorld {
     Simulation simulation_;
     StepData step_;
     std::unique_ptr<Stages> stages_;  ///< from the first step on
+    Trace* trace_ = nullptr;
 };
 
 }  // namespace tesserae::parallel

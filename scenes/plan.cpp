@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/dynamics/type_properties.hpp"
 #include "core/error.hpp"
 #include "render/frame_scene.hpp"
 #include "scenes/memory.hpp"
@@ -43,11 +44,22 @@ bool any_motion(const Scene& scene) {
 }
 
 /// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
-void decide_solver(const PhysicsSettings& physics, Plan& plan) {
+void decide_solver(const Scene& scene, Plan& plan) {
+    const PhysicsSettings& physics = *scene.physics;
     if (plan.movable_bodies == 0) {
         plan.decisions.push_back({"contacts", false, "no body can be moved by them"});
         return;
     }
+    const auto any_type = [&](auto&& has) {
+        return std::any_of(scene.bodies.types.begin(), scene.bodies.types.end(), has);
+    };
+    const bool rubs = any_type([](const BodyType& type) { return type.friction > 0; });
+    plan.decisions.push_back({"friction", rubs,
+                              rubs ? "contacts have tangent rows"
+                                   : "friction = 0 everywhere: contacts have no tangent rows"});
+    const bool bounces = any_type([](const BodyType& type) { return type.restitution > 0; });
+    plan.decisions.push_back(
+        {"restitution", bounces, bounces ? "contacts may rebound" : "restitution = 0 everywhere"});
     plan.decisions.push_back(
         {"sub-steps", physics.substeps > 1,
          fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations)});
@@ -70,16 +82,15 @@ void decide_physics(const Scene& scene, Plan& plan) {
         plan.decisions.push_back({"physics", true,
                                   fmt::format("{} of {} bodies can be moved by contacts",
                                               plan.movable_bodies, plan.bodies)});
-    const bool any_turning_inertia =
-        std::any_of(scene.bodies.types.begin(), scene.bodies.types.end(), [](const BodyType& t) {
-            return is_bounded(t.shape) && !std::holds_alternative<Hypersphere>(t.shape);
-        });
-    if (plan.moves)
-        plan.decisions.push_back({"gyroscopic term", any_turning_inertia,
-                                  any_turning_inertia
-                                      ? "there are bodies whose inertia depends on the direction"
-                                      : "spheres only: inertia is the same in every plane"});
-    if (plan.moves) decide_solver(*scene.physics, plan);
+    if (!plan.moves) return;
+    const std::vector<TypeProperties> types = type_properties(scene.bodies);
+    const bool uneven = std::any_of(types.begin(), types.end(),
+                                    [](const TypeProperties& type) { return !type.isotropic; });
+    plan.decisions.push_back(
+        {"gyroscopic term and 6x6 inertia", uneven,
+         uneven ? "there are bodies whose inertia depends on the direction"
+                : "what turns are spheres and cubes: their inertia is one number"});
+    decide_solver(scene, plan);
 }
 
 }  // namespace

@@ -71,7 +71,8 @@ StepReport checked_step(const Scene& scene, parallel::ParallelWorld& world) {
 /// Stores the rows that are missing. Every row holds a state and what the step that led to it
 /// found; the first, before any step, found nothing.
 void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
-                const std::vector<std::uint64_t>& steps, SimulateReport& report, bool quiet) {
+                const std::vector<std::uint64_t>& steps, SimulateReport& report, bool quiet,
+                parallel::Trace* trace) {
     Bodies start = scene.bodies;
     std::uint64_t step = 0;
     StepMemory memory;
@@ -85,6 +86,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     if (plan.moves) {
         world.emplace(std::move(start), *scene.physics);
         world->memory() = std::move(memory);
+        world->set_trace(trace);
     }
     const Bodies& bodies = world ? world->bodies() : start;
 
@@ -117,7 +119,8 @@ std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_
 }
 
 SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
-                        std::uint64_t store_every, bool overwrite, bool quiet) {
+                        std::uint64_t store_every, bool overwrite, bool quiet,
+                        parallel::Trace* trace) {
     const auto begin = std::chrono::steady_clock::now();
     const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
     SimulateReport report;
@@ -126,7 +129,7 @@ SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& fi
     if (!is_complete(scene, file, steps, overwrite)) {
         TrajectoryWriter writer(file, header_of(scene, store_every), steps, overwrite);
         if (!writer.note().empty()) fmt::print(stderr, "tesserae: {}\n", writer.note());
-        store_rows(scene, plan, writer, steps, report, quiet);
+        store_rows(scene, plan, writer, steps, report, quiet, trace);
         writer.finish();
     }
     report.seconds =

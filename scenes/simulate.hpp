@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "parallel/trace.hpp"
 #include "scenes/plan.hpp"
 #include "scenes/scene.hpp"
 
@@ -24,11 +25,13 @@ std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_
 /// steps is left as it is; an unfinished one is continued, and so is a finished one of a shorter
 /// duration: the bytes of every dataset are those of one straight run.
 /// Runs on the threads of the caller's parallel::Threads.
+/// @param trace     records the stages of every step that is taken
 /// @throws InputError   `file` is of another motion, stores other steps or more than the scene's,
 ///                      and not `overwrite`
 /// @throws RunError     a body left the finite range, or the file cannot be written
 /// @throws Stopped      after a signal; what is stored is kept
 SimulateReport simulate(const Scene& scene, const Plan& plan, const std::filesystem::path& file,
-                        std::uint64_t store_every, bool overwrite, bool quiet);
+                        std::uint64_t store_every, bool overwrite, bool quiet,
+                        parallel::Trace* trace = nullptr);
 
 }  // namespace tesserae::scenes

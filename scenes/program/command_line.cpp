@@ -78,6 +78,8 @@ void add_simulation(CLI::App& app, CommandLine& line) {
     app.add_option("--store-every", line.store_every,
                    "store every K-th step (default: the steps that the frames need)")
         ->check(CLI::PositiveNumber);
+    app.add_option("--trace", line.trace,
+                   "which thread simulated what when, as JSON for Perfetto or chrome://tracing");
 }
 
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.

@@ -13,6 +13,7 @@ struct CommandLine {
     std::filesystem::path file;  ///< the scene, or info's file
     std::filesystem::path output;
     std::filesystem::path trajectory;
+    std::filesystem::path trace;  ///< empty: none
     std::string frames;
     std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
     std::string generator;

@@ -4,9 +4,11 @@
 #include <exception>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
+#include "parallel/trace.hpp"
 #include "render/file/file_writer.hpp"
 #include "scenes/film.hpp"
 #include "scenes/generate.hpp"
@@ -98,15 +100,26 @@ std::string filmed_text(const FilmReport& r) {
                        r.preview.string());
 }
 
+/// simulate(), and the trace of it where one is asked for.
+SimulateReport traced_simulate(const CommandLine& line, const Work& work, const fs::path& file) {
+    std::optional<parallel::Trace> trace;
+    if (!line.trace.empty()) {
+        trace.emplace();
+        // Empty at first, so that a path that cannot be written shows before the work.
+        render::write_file(line.trace, trace->json());
+    }
+    const SimulateReport report = simulate(work.scene, work.plan, file, line.store_every,
+                                           line.overwrite, line.quiet, trace ? &*trace : nullptr);
+    if (trace) render::write_file(line.trace, trace->json());
+    return report;
+}
+
 void simulate_command(const CommandLine& line) {
     const Work work(line);
     require_memory(work.plan, work.scene);
     stop_gracefully_on_signals();
     SimulateReport report;
-    parallel::Threads(line.threads).run([&] {
-        report = simulate(work.scene, work.plan, line.output, line.store_every, line.overwrite,
-                          line.quiet);
-    });
+    parallel::Threads(line.threads).run([&] { report = traced_simulate(line, work, line.output); });
     Json json = to_json(report);
     json["trajectory"] = line.output.string();
     json["hash"] = work.scene.motion_hash;
@@ -132,8 +145,7 @@ void film_command(const CommandLine& line) {
             require_folder_of(scene, line.output, line.overwrite);
             create_folder(line.output);
             trajectory = line.output / "trajectory.h5";
-            json["simulate"] = to_json(simulate(scene, work.plan, trajectory, line.store_every,
-                                                line.overwrite, line.quiet));
+            json["simulate"] = to_json(traced_simulate(line, work, trajectory));
             json["simulate"]["trajectory"] = trajectory.string();
         }
         filmed = film(scene, frames, trajectory, line.output, line.overwrite, line.quiet);

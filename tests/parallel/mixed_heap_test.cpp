@@ -5,6 +5,7 @@
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
+#include "tests/parallel/first_difference.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -38,8 +39,8 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
         threads.run([&] {
             for (int i = 0; i < kSteps; ++i) world.step(kStep);
         });
-        EXPECT_TRUE(same_bits(world.bodies(), end)) << count;
-        EXPECT_TRUE(same_values(world.memory(), serial.memory())) << count;
+        EXPECT_EQ(difference_of(serial, world), "")
+            << count << " threads; " << first_difference(mixed_heap(), {}, kStep, kSteps, threads);
     }
 }
 
@@ -51,8 +52,9 @@ void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, i
         threads.run([&] {
             for (int i = 0; i < steps; ++i) world.step(1.0 / 80);
         });
-        EXPECT_TRUE(same_bits(world.bodies(), serial.bodies())) << count;
-        EXPECT_TRUE(same_values(world.memory(), serial.memory())) << count;
+        EXPECT_EQ(difference_of(serial, world), "")
+            << count << " threads; "
+            << first_difference(bodies, settings, 1.0 / 80, steps, threads);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "core/dynamics/world.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
+#include "tests/parallel/first_difference.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -40,8 +41,8 @@ TEST_P(ParallelWorldOf, ThreadsHasTheBitsOfTheSerialWorld) {
     });
     EXPECT_GT(contacts, 10000u);
     EXPECT_EQ(contacts, reference().contacts);
-    EXPECT_TRUE(same_bits(world.bodies(), reference().world.bodies()));
-    EXPECT_TRUE(same_values(world.memory(), reference().world.memory()));
+    EXPECT_EQ(difference_of(reference().world, world), "")
+        << first_difference(start, {}, kStep, kSteps, threads);
     EXPECT_FALSE(same_bits(world.bodies(), start));
 }
 
@@ -68,8 +69,8 @@ TEST(ParallelWorld, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
     threads.run([&] {
         for (int i = 0; i < 150; ++i) world.step(kStep);
     });
-    EXPECT_TRUE(same_bits(world.bodies(), serial.bodies()));
-    EXPECT_TRUE(same_values(world.memory(), serial.memory()));
+    EXPECT_EQ(difference_of(serial, world), "")
+        << first_difference(towers(), {}, kStep, 150, threads);
 }
 
 TEST(ParallelWorld, ContinuesASerialRun) {
@@ -82,7 +83,7 @@ TEST(ParallelWorld, ContinuesASerialRun) {
         for (int i = 0; i < 40; ++i) world.step(kStep);
     });
     for (int i = 0; i < 40; ++i) serial.step(kStep);
-    EXPECT_TRUE(same_bits(world.bodies(), serial.bodies()));
+    EXPECT_EQ(difference_of(serial, world), "");
 }
 
 TEST(ParallelWorld, NamesTheLowestBodyThatLeftTheFiniteRange) {

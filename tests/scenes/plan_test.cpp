@@ -46,6 +46,38 @@ TEST(Plan, ShadowRaysNeedALightThatCastsThemAndTwoBodies) {
     EXPECT_FALSE(shadows(point).needed);
 }
 
+TEST(Plan, LeavesOutOfAStepWhatNoBodyHas) {
+    const auto needed = [](const std::string& bodies, const std::string& part) {
+        const Decision d = decision_of("[physics]\n" + bodies, {}, part);
+        EXPECT_NE(d.reason, "no such part") << part;
+        return d.needed;
+    };
+    const auto body = [](const std::string& lines) { return "[[body]]\n" + lines + "\n"; };
+    const std::string sphere = "shape = \"hypersphere\"\nradius = 1\n";
+    const auto box = [](const std::string& size) {
+        return "shape = \"hyperbox\"\nsize = " + size + "\n";
+    };
+    const std::string smooth = body(sphere + "friction = 0");
+    EXPECT_FALSE(needed(smooth, "friction"));
+    EXPECT_TRUE(needed(smooth + body(sphere + "friction = 0.1"), "friction"));
+    EXPECT_FALSE(needed(smooth, "restitution"));
+    EXPECT_TRUE(needed(smooth + body(sphere + "restitution = 0.1"), "restitution"));
+
+    const std::string inertia = "gyroscopic term and 6x6 inertia";
+    EXPECT_FALSE(needed(smooth + body(box("[1, 1, 1, 1]")), inertia));
+    EXPECT_TRUE(needed(smooth + body(box("[1, 2, 1, 1]")), inertia));
+    const std::string held = "fixed = [\"position\", \"rotation\"]\n";
+    EXPECT_FALSE(needed(smooth + body(box("[1, 2, 1, 1]") + held), inertia));
+
+    const auto physics = [](const std::string& bodies) {
+        return decision_of("[physics]\n" + bodies, {}, "physics");
+    };
+    EXPECT_TRUE(physics(smooth).needed);
+    EXPECT_FALSE(physics(body(sphere + held)).needed);
+    EXPECT_EQ(decision_of("[physics]\n" + body(sphere + held), {}, "friction").reason,
+              "no such part");
+}
+
 TEST(Plan, SaysHowLightIsFollowed) {
     const std::string illumination = "global illumination",
                       mirrors = "reflected and refracted rays";

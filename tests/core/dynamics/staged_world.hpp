@@ -42,6 +42,8 @@ class StagedWorld {
     void relax() {
         advance_second_half(simulation, step, all());
         for (std::size_t i = 0; i < step.islands.size(); ++i) relax_island(simulation, step, i);
+        step.pushing.clear();
+        list_pushing(step, {0, step.impulses.size()}, step.pushing);
         end_substep(simulation, step);
     }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/staged_world.hpp"
 
@@ -261,6 +262,23 @@ TEST(WideSolver, WorksAsWellFarAwayAndAtHighSpeed) {
         EXPECT_LT(difference(here.step, there.step), 1e-5);
         const auto carries = [](const ContactImpulse& impulse) { return impulse.normal > 0.01; };
         EXPECT_GT(std::count_if(here.step.impulses.begin(), here.step.impulses.end(), carries), 50);
+    }
+}
+
+/// The stages that these tests drive by hand are those of World, what it keeps included.
+TEST(StagedWorld, HasTheBitsOfWorld) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
+        PhysicsSettings settings = settings_of(solver, 5);
+        settings.substeps = 3;
+        World world(mixed_heap(), settings);
+        StagedWorld staged(mixed_heap(), settings, kColouredFrom);
+        for (int i = 0; i < 200; ++i) {
+            world.step(kStep);
+            staged.advance(kStep);
+            ASSERT_TRUE(same_bits(world.bodies(), staged.simulation.bodies)) << "step " << i;
+        }
+        EXPECT_GT(world.memory().impulses.size(), 50u);
+        EXPECT_TRUE(same_values(world.memory(), staged.simulation.memory));
     }
 }
 

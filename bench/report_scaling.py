@@ -1,0 +1,155 @@
+"""How the stages of a step grow with the bodies and shrink with the threads: one CSV file, three plots.
+
+usage: report_scaling.py HEAD SCALING_CSV RESULTS_FOLDER
+HEAD holds the comment lines (machine, build, commit) that begin every CSV file; SCALING_CSV is what the
+program scaling printed, every configuration several times.
+"""
+
+import collections
+import csv
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from report_accuracy import save, write_csv
+
+STAGES = ["advance_first_half", "find_pairs", "find_contacts", "integrate_velocities",
+          "build_islands", "solve_islands", "advance_second_half", "relax_islands", "finish_step"]
+TIMES = ["step"] + STAGES
+COLORS = dict(zip(STAGES, plt.get_cmap("tab10").colors))
+
+
+def read(path):
+    """{(scene, bodies, threads): {quantity: [value of every repeat]}}, in the order of the file."""
+    runs = collections.defaultdict(lambda: collections.defaultdict(list))
+    with open(path) as file:
+        for row in csv.DictReader(file):
+            key = row["scene"], int(row["bodies"]), int(row["threads"])
+            runs[key][row["quantity"]].append(float(row["value"]))
+    return runs
+
+
+def spread_percent(values):
+    """Largest less least, of the median."""
+    middle = np.median(values)
+    return 100 * (max(values) - min(values)) / middle if middle else 0
+
+
+def medians(runs):
+    return {key: {name: np.median(values) for name, values in quantities.items()}
+            for key, quantities in runs.items()}
+
+
+def ratios(of, scene, bodies):
+    """{stage: (1 thread over 2, serial share)}. By Amdahl's law 2 threads take s + (1 - s)/2 of the
+    time, s the share that does not gain: what is serial, what waits, and what the memory limits."""
+    table = {}
+    if (scene, bodies, 1) not in of or (scene, bodies, 2) not in of:
+        return table
+    one, two = of[scene, bodies, 1], of[scene, bodies, 2]
+    for stage in TIMES:
+        key = f"{stage}_ms"
+        if one.get(key) and two.get(key):
+            table[stage] = one[key] / two[key], 2 * two[key] / one[key] - 1
+    return table
+
+
+def write_table(path, head, runs, of):
+    rows = []
+    for (scene, bodies, threads), quantities in runs.items():
+        for name, values in quantities.items():
+            rows.append([scene, bodies, threads, name, f"{np.median(values):.4g}",
+                         f"{spread_percent(values):.1f}"])
+        if threads == 2:
+            for stage, (speedup, serial) in ratios(of, scene, bodies).items():
+                rows.append([scene, bodies, 2, f"{stage}_speedup", f"{speedup:.3f}", ""])
+                rows.append([scene, bodies, 2, f"{stage}_serial_share", f"{serial:.3f}", ""])
+    write_csv(path, head, ["scene", "bodies", "threads", "quantity", "median", "spread_percent"],
+              rows)
+
+
+def panels(scenes):
+    figure, axes = plt.subplots(1, len(scenes), figsize=(3.6 * len(scenes), 4), sharey=True,
+                                squeeze=False, layout="constrained")
+    for axis, scene in zip(axes[0], scenes):
+        axis.set_title(scene)
+        axis.set_xscale("log")
+        axis.set_xlabel("bodies")
+    return figure, axes[0]
+
+
+def sizes_of(of, scene, threads=1):
+    return sorted(bodies for name, bodies, count in of if (name, count) == (scene, threads))
+
+
+def plot_times(path, of, scenes):
+    """One thread drawn through, two dashed."""
+    figure, axes = panels(scenes)
+    for axis, scene in zip(axes, scenes):
+        axis.set_yscale("log")
+        for stage in TIMES:
+            for threads, line in ((1, "-"), (2, "--")):
+                sizes = sizes_of(of, scene, threads)
+                times = [1e3 * of[scene, n, threads].get(f"{stage}_ms", np.nan) / n for n in sizes]
+                axis.plot(sizes, times, line, color=COLORS.get(stage, "black"), marker=".",
+                          label=stage if threads == 1 else None)
+    axes[0].set_ylabel("µs a body and step (dashed: 2 threads)")
+    axes[-1].legend(fontsize=7, bbox_to_anchor=(1.02, 1), loc="upper left")
+    save(figure, path)
+
+
+def plot_shares(path, of, scenes):
+    figure, axes = panels(scenes)
+    for axis, scene in zip(axes, scenes):
+        sizes = sizes_of(of, scene)
+        times = np.array([[of[scene, n, 1].get(f"{stage}_ms", 0) for n in sizes]
+                          for stage in STAGES])
+        bottom = np.zeros(len(sizes))
+        for stage, share in zip(STAGES, 100 * times / times.sum(axis=0)):
+            axis.bar(range(len(sizes)), share, bottom=bottom, color=COLORS[stage], label=stage)
+            bottom += share
+        axis.set_xscale("linear")
+        axis.set_xticks(range(len(sizes)), [f"{n:.0e}" for n in sizes])
+    axes[0].set_ylabel("share of the step, 1 thread [%]")
+    axes[-1].legend(fontsize=7, bbox_to_anchor=(1.02, 1), loc="upper left")
+    save(figure, path)
+
+
+def plot_threads(path, of, scenes):
+    """The step's gain, and the serial share that would explain it."""
+    figure, (gain, serial) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+    for scene in scenes:
+        sizes = [n for n in sizes_of(of, scene) if "step" in ratios(of, scene, n)]
+        of_step = np.array([ratios(of, scene, n)["step"] for n in sizes]).reshape(-1, 2)
+        gain.plot(sizes, of_step[:, 0], ".-", label=scene)
+        serial.plot(sizes, 100 * of_step[:, 1], ".-", label=scene)
+    gain.axhline(2, color="gray", lw=0.5)
+    gain.set_ylabel("step: time of 1 thread over that of 2")
+    serial.set_ylabel("serial share by Amdahl's law [%]")
+    for axis in gain, serial:
+        axis.set_xscale("log")
+        axis.set_xlabel("bodies")
+        axis.legend(fontsize=7)
+    save(figure, path)
+
+
+def main():
+    head_path, path, results = sys.argv[1:]
+    with open(head_path) as file:
+        head = file.read()
+    runs = read(path)
+    of = medians(runs)
+    scenes = list(dict.fromkeys(scene for scene, _, _ in of))
+    os.makedirs(results, exist_ok=True)
+    write_table(f"{results}/scaling.csv", head, runs, of)
+    plot_times(f"{results}/time_per_body.png", of, scenes)
+    plot_shares(f"{results}/shares.png", of, scenes)
+    plot_threads(f"{results}/threads.png", of, scenes)
+
+
+main()

@@ -1,0 +1,76 @@
+// Hashes of where the gallery's and generated scenes are after some steps: the same bits from every
+// compiler. One that moves is a change of results: to be wanted, reviewed, and named in the
+// commit's message.
+#include <gtest/gtest.h>
+
+#include "core/dynamics/islands.hpp"
+#include "parallel/parallel_world.hpp"
+#include "parallel/threads.hpp"
+#include "scenes/generate.hpp"
+#include "scenes/load/hash.hpp"
+#include "tests/scenes/load/load_scene_text.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+template <class T>
+std::string bytes_of(const std::vector<T>& list) {
+    return {reinterpret_cast<const char*>(list.data()), list.size() * sizeof(T)};
+}
+
+/// A hash of all positions and rotors after so many steps, and the contacts that push then.
+struct End {
+    std::string hash;
+    std::size_t contacts;
+};
+
+End end_of(const Scene& scene, int steps) {
+    parallel::ParallelWorld world(scene.bodies, *scene.physics);
+    parallel::Threads(2).run([&] {
+        for (int i = 0; i < steps; ++i) world.step(1 / scene.physics->steps_per_second);
+    });
+    return {hex_hash(bytes_of(world.bodies().position) + bytes_of(world.bodies().rotor)),
+            world.memory().impulses.size()};
+}
+
+End end_of_gallery(const std::string& name, int steps) {
+    return end_of(load_scene(TESSERAE_SOURCE_DIR "/scenes/gallery/" + name, {}), steps);
+}
+
+End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
+                     const std::vector<std::string>& sets = {}) {
+    return end_of(load_text(generated_scene(name, bodies), sets), steps);
+}
+
+TEST(Golden, GalleryScenesMoveAsEver) {
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "fcd47302b7ee206934e05f32598130ec");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "46898d1db591495d24482aab33f201a6");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "1223e7472cf6b96919714b763208f173");
+}
+
+TEST(Golden, GeneratedScenesMoveAsEver) {
+    const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
+                                           "physics.iterations=2", "physics.sleeping=true"};
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "f59839e72374891f0cd6103ee336ed08");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "ace5e05ab0bbeec406950e1223d09cfb");
+    EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "f65ac3eb41e2be2d3c8a89b84af50bdf");
+}
+
+/// One island each, with so many contacts that it is coloured and solved in float.
+TEST(Golden, LargeIslandsMoveAsEver) {
+    const auto expect = [](const char* name, std::uint64_t bodies, int steps,
+                           const std::vector<std::string>& sets, const std::string& hash) {
+        const End end = end_of_generated(name, bodies, steps, sets);
+        EXPECT_GT(end.contacts, kColouredFrom) << name;
+        EXPECT_EQ(end.hash, hash) << name;
+    };
+    const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
+                                           "physics.iterations=2"};
+    expect("pile", 1000, 200, {}, "4a7540de1204b5446b4dbd5481d0674d");
+    expect("pile", 1000, 200, soft, "3f6b2168a582f21c783d66730fd6b7c3");
+    expect("pyramid", 200, 60, {}, "daa3c87cb8fbc3a8efb10f6deb9099db");
+    expect("pyramid", 200, 60, soft, "489f054804e5e3d0362ef0ffb5ae8427");
+}
+
+}  // namespace
+}  // namespace tesserae::scenes
