@@ -170,8 +170,8 @@ double embree_rate(const FrameScene& scene) {
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                RTC_FORMAT_FLOAT4, 4 * sizeof(float),
-                                                               scene.slice.size()));
-    for (const SliceBounds& s : scene.slice) {
+                                                               scene.slice().size()));
+    for (const SliceBounds& s : scene.slice()) {
         for (int i = 0; i < 3; ++i) *vertex++ = static_cast<float>(s.centre[i]);
         *vertex++ = static_cast<float>(s.radius);
     }
@@ -179,7 +179,7 @@ double embree_rate(const FrameScene& scene) {
     rtcAttachGeometry(spheres, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(spheres);
-    const std::vector<ViewRay> rays = view_rays(scene.camera);
+    const std::vector<ViewRay> rays = view_rays(scene.opening().camera);
     const Time time = time_of([&] {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
@@ -205,20 +205,22 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
     FilmList list;
     const auto trace_window = [&](const Tile& tile, int x0, int y0) {
         const Crop window = {x0, y0, x0 + FilmList::kSide, y0 + FilmList::kSide};
-        list.fill(scene.slice, tile.candidates, window);
+        list.fill(scene.slice(), tile.candidates, window);
         for (int y = window.y0; y < window.y1; ++y)
             for (int x = window.x0; x < window.x1; ++x) {
-                const Vec3 view = scene.camera.ray_direction({x + 0.5, y + 0.5});
-                const Vec4 world = scene.camera.to_world({view.x(), view.y(), view.z(), 0});
-                const Hit hit =
-                    list.nearest(scene.placed, view, world, scene.picture.settings, m.stats);
-                if (hit) surfaces.push_back(scene.shading.surface(hit, world));
+                const Vec3 view = scene.opening().camera.ray_direction({x + 0.5, y + 0.5});
+                const Vec4 world =
+                    scene.opening().camera.to_world({view.x(), view.y(), view.z(), 0});
+                const Hit hit = list.nearest(scene.opening().placed, view, world,
+                                             scene.picture().settings, m.stats);
+                if (hit)
+                    surfaces.push_back(scene.opening().shading.surface(hit, Vec4::Zero(), world));
             }
     };
     m.time = time_of([&] {
         m.stats = {};
         surfaces.clear();
-        TileSource source(scene.slice, {0, 0, kSide, kSide}, scene.picture.settings.tile);
+        TileSource source(scene.slice(), {0, 0, kSide, kSide}, scene.picture().settings.tile);
         while (const auto tile = source.next())
             for (int y = tile->y0; y < tile->y1; y += FilmList::kSide)
                 for (int x = tile->x0; x < tile->x1; x += FilmList::kSide)
@@ -230,8 +232,9 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
 /// The same rays by the hierarchy for rays that do not start at one point.
 Measured through_view_scene(const FrameScene& scene, std::size_t& hit_count) {
     Measured m{{}, double{kSide} * kSide, {}};
-    const ViewScene view(scene.placed, scene.camera, scene.picture.settings, {}, 0);
-    const std::vector<ViewRay> rays = view_rays(scene.camera);
+    const ViewScene view(scene.opening().placed, scene.opening().camera, scene.picture().settings,
+                         {}, 0);
+    const std::vector<ViewRay> rays = view_rays(scene.opening().camera);
     std::vector<Hit> hits(rays.size());
     m.time = time_of([&] {
         m.stats = {};
@@ -289,8 +292,8 @@ void measure(int count, Intersector intersector) {
     const SunDisc sun = sun_disc(cloud.lights.suns[0]);
     std::erase_if(lit, [&](const Surface& s) { return s.normal.dot(sun.toward) <= 0; });
     const std::vector<Vec4> directions = bounces(lit);
-    const RayScene rays(scene.placed, picture.settings);
-    const Shadows shadows(scene.placed);
+    const RayScene rays(scene.opening().placed, picture.settings);
+    const Shadows shadows(scene.opening().placed);
     const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
         return rays.is_blocked(s.point, sun.toward, kMiss, s.body, stats);
     });
@@ -308,9 +311,11 @@ void measure(int count, Intersector intersector) {
                from_surfaces(lit, [&](std::size_t i, const Surface& s, FrameStats& stats) {
                    return rays.nearest(s.point, directions[i], kMiss, s.body, stats) ? 1 : 0;
                }));
-    report.build("build_tree_ms", time_of([&] { BodyTree(scene.placed); }));
-    report.build("build_view_scene_ms",
-                 time_of([&] { ViewScene(scene.placed, scene.camera, picture.settings, {}, 0); }));
+    report.build("build_tree_ms", time_of([&] { BodyTree(scene.opening().placed); }));
+    report.build("build_view_scene_ms", time_of([&] {
+                     ViewScene(scene.opening().placed, scene.opening().camera, picture.settings, {},
+                               0);
+                 }));
 }
 
 }  // namespace

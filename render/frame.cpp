@@ -28,6 +28,7 @@ std::size_t tiles_in_flight(int tile) {
 struct Slot {
     Tile tile;
     TileImage image;
+    PackedTile packed;
 };
 
 }  // namespace
@@ -62,10 +63,11 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     };
     const auto render = [&](Slot* slot) {
         slot->image = render_tile(scene, slot->tile, stop);
+        slot->packed = image.pack(slot->image);
         return slot;
     };
     const auto write = [&](Slot* slot) {
-        image.write(slot->image);
+        image.write(slot->packed);
         if (small) small->add(slot->image);
         stats += slot->image.stats;
     };

@@ -12,7 +12,10 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledInputFile.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
+#include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -35,6 +38,24 @@ class Stream : public Imf::OStream {
     void seekp(std::uint64_t position) override { writer.seek(position); }
 
     FileWriter writer;
+};
+
+/// OpenEXR's stream into memory: it knows every position, and keeps what was written last.
+class MemoryStream : public Imf::OStream {
+  public:
+    MemoryStream() : Imf::OStream("tile") {}
+
+    void write(const char data[], int count) override {
+        bytes.insert(bytes.end(), data, data + count);
+        position_ += static_cast<std::uint64_t>(count);
+    }
+    std::uint64_t tellp() override { return position_; }
+    void seekp(std::uint64_t position) override { position_ = position; }
+
+    std::vector<char> bytes;
+
+  private:
+    std::uint64_t position_ = 0;
 };
 
 /// A channel of the file and where it lies in a Pixel.
@@ -132,26 +153,53 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
 
 }  // namespace
 
+/// A file in memory with the same header: what OpenEXR writes there for a tile is what the real
+/// file needs.
+struct ExrWriter::Packer {
+    MemoryStream stream;
+    Imf::TiledOutputFile tiles;
+
+    explicit Packer(const Imf::Header& header) : tiles(stream, header, 0) {}
+};
+
+/// OpenEXR can compress on threads of its own, but only tiles that make a rectangle, and not those
+/// of a Hilbert curve as they come. So every thread compresses into a file of its own, and here the
+/// results are put in a row, with the table that says where they are.
 struct ExrWriter::File {
     Stream stream;
+    Imf::Header header;
     std::optional<Imf::TiledOutputFile> tiles;
+    std::uint64_t table;  ///< where the file holds the tiles' positions
+    int columns;
+    std::vector<std::uint64_t> offsets;  ///< of the tiles, by rows; 0 where none is written
+    tbb::enumerable_thread_specific<Packer> packers;
 
-    explicit File(const std::filesystem::path& path) : stream(path) {}
+    File(const std::filesystem::path& path, const Imf::Header& head)
+        : stream(path), header(head), packers([this] { return Packer(header); }) {
+        // No threads of OpenEXR's own: tiles come from threads enough.
+        tiles.emplace(stream, header, 0);
+        columns = tiles->numXTiles();
+        offsets.resize(static_cast<std::size_t>(columns * tiles->numYTiles()));
+        table = stream.tellp() - sizeof(std::uint64_t) * offsets.size();
+    }
+
+    bool has_tiles() const {
+        return std::any_of(offsets.begin(), offsets.end(), [](auto o) { return o != 0; });
+    }
 };
 
 ExrWriter::ExrWriter(const std::filesystem::path& path, const Settings& settings,
                      const Crop& window, const FrameInfo& info,
                      const CameraDescription& description, const Camera& camera)
-    : channels_(settings.channels), file_(std::make_unique<File>(path)) {
+    : channels_(settings.channels) {
     if (places_of(channels_).empty())
         throw InputError("render.channels = []: an image needs at least one channel");
-    // No threads of OpenEXR's own: tiles come from threads enough.
-    file_->tiles.emplace(file_->stream, header_of(settings, window, info, description, camera), 0);
+    file_ = std::make_unique<File>(path, header_of(settings, window, info, description, camera));
 }
 
 ExrWriter::~ExrWriter() = default;
 
-void ExrWriter::write(const TileImage& tile) {
+PackedTile ExrWriter::pack(const TileImage& tile) {
     // Channels lie interleaved in the tile's pixels.
     const Imath::V2i corner(tile.x0, tile.y0);
     Imf::FrameBuffer buffer;
@@ -162,8 +210,17 @@ void ExrWriter::write(const TileImage& tile) {
                                        sizeof(Pixel),
                                        sizeof(Pixel) * static_cast<std::size_t>(tile.width())));
     }
-    file_->tiles->setFrameBuffer(buffer);
-    file_->tiles->writeTile(tile.column, tile.row);
+    Packer& packer = file_->packers.local();
+    packer.stream.bytes.clear();
+    packer.tiles.setFrameBuffer(buffer);
+    packer.tiles.writeTile(tile.column, tile.row);
+    return {tile.column, tile.row, packer.stream.bytes};
+}
+
+void ExrWriter::write(const PackedTile& tile) {
+    const auto index = static_cast<std::size_t>(tile.row * file_->columns + tile.column);
+    file_->offsets[index] = file_->stream.tellp();
+    file_->stream.write(tile.bytes.data(), static_cast<int>(tile.bytes.size()));
 }
 
 void ExrWriter::copy_tiles(const std::filesystem::path& other) {
@@ -176,8 +233,17 @@ void ExrWriter::copy_tiles(const std::filesystem::path& other) {
 }
 
 void ExrWriter::finish() {
-    // Its destructor writes the table of tiles.
+    // Its destructor writes the table of the tiles that were copied.
     file_->tiles.reset();
+    if (file_->has_tiles()) {
+        // EXR files are little-endian everywhere.
+        static_assert(std::endian::native == std::endian::little);
+        const std::uint64_t end = file_->stream.tellp();
+        file_->stream.seekp(file_->table);
+        file_->stream.write(reinterpret_cast<const char*>(file_->offsets.data()),
+                            static_cast<int>(sizeof(std::uint64_t) * file_->offsets.size()));
+        file_->stream.seekp(end);
+    }
     file_->stream.writer.finish();
 }
 

@@ -2,12 +2,19 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "render/camera.hpp"
 #include "render/frame.hpp"
 #include "render/tile_image.hpp"
 
 namespace tesserae::render {
+
+/// A tile as it is stored in the file.
+struct PackedTile {
+    int column = 0, row = 0;
+    std::vector<char> bytes;
+};
 
 /// Writes a frame as a tiled, ZIP-compressed OpenEXR file, tiles in the order of the calls. Without
 /// finish() nothing is left.
@@ -26,7 +33,10 @@ class ExrWriter {
               const FrameInfo& info, const CameraDescription& description, const Camera& camera);
     ~ExrWriter();
 
-    void write(const TileImage& tile);
+    /// Compresses a tile, on any thread, while others do the same.
+    PackedTile pack(const TileImage& tile);
+    /// One tile at a time.
+    void write(const PackedTile& tile);
     /// Instead: all tiles of another file, as they are stored there. It must have been written with
     /// the same settings and window.
     /// @throws RunError   it cannot be read
@@ -36,6 +46,7 @@ class ExrWriter {
 
   private:
     struct File;
+    struct Packer;
     Channels channels_;
     std::unique_ptr<File> file_;
 };
