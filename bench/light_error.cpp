@@ -67,10 +67,11 @@ class Rays {
         : settings_(settings_of(s, integrator)),
           picture_{s.bodies, appearance_of(s), materials_, camera_, s.lights, settings_},
           placed_(render::place_bodies(picture_, Vec4::Zero())),
+          tree_(placed_),
           lights_(s.lights, Vec4::Zero()),
-          shading_(picture_, placed_, lights_),
-          transport_(picture_, placed_, lights_, shading_),
-          scene_(placed_, settings_) {
+          shading_(picture_, placed_, tree_, lights_),
+          transport_(picture_, placed_, tree_, lights_, shading_),
+          scene_(placed_, tree_, settings_) {
         for (int i = 0; i < kRays; ++i)
             directions_.push_back(
                 Vec4(-0.7 + 1.4 * (i % 16) / 15, -1, -0.7 + 1.4 * (i / 16) / 15, 0).normalized());
@@ -115,6 +116,7 @@ class Rays {
     render::Settings settings_;
     render::Picture picture_;
     render::PlacedBodies placed_;
+    render::BodyTree tree_;
     render::LightSet lights_;
     render::Shading shading_;
     render::LightTransport transport_;

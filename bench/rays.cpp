@@ -292,8 +292,9 @@ void measure(int count, Intersector intersector) {
     const SunDisc sun = sun_disc(cloud.lights.suns[0]);
     std::erase_if(lit, [&](const Surface& s) { return s.normal.dot(sun.toward) <= 0; });
     const std::vector<Vec4> directions = bounces(lit);
-    const RayScene rays(scene.opening().placed, picture.settings);
-    const Shadows shadows(scene.opening().placed);
+    const Instant& instant = scene.opening();
+    const RayScene rays(instant.placed, instant.tree, picture.settings);
+    const Shadows shadows(instant.placed, instant.tree);
     const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
         return rays.is_blocked(s.point, sun.toward, kMiss, s.body, stats);
     });

@@ -130,6 +130,8 @@ class BodyTreeBuilder {
         for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
             if (placed.bodies[i].radius < std::numeric_limits<double>::infinity())
                 bounded_.push_back(i);
+            else
+                tree_.unbounded_.push_back(i);
         members_.resize(bounded_.size());
         tbb::parallel_for(std::size_t{0}, bounded_.size(),
                           [&](std::size_t i) { members_[i] = member_of(placed_, bounded_[i]); });

@@ -45,6 +45,9 @@ class BodyTree {
     void for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
                           Visit&& visit) const;
 
+    /// The bodies that no box holds, ascending: the walks leave them to the caller.
+    const std::vector<std::uint32_t>& unbounded() const { return unbounded_; }
+
     /// A hash of the whole tree, for tests.
     std::uint64_t fingerprint() const;
 
@@ -111,6 +114,7 @@ class BodyTree {
 
     std::vector<Node> nodes_;  ///< the root first; empty without bodies
     std::vector<Leaf> leaves_;
+    std::vector<std::uint32_t> unbounded_;
 };
 
 template <bool kCone>

@@ -54,6 +54,12 @@ double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
     return (moved + turned) / (depth * camera.pixel_size());
 }
 
+/// For rays that leave the slice, if there are any.
+BodyTree tree_of(const Picture& picture, const PlacedBodies& placed, const LightSet& lights) {
+    const bool is_asked = !lights.is_empty() || LightTransport::needs_rays(picture);
+    return BodyTree(is_asked ? placed : PlacedBodies{});
+}
+
 int instant_count(const Picture& picture, const Camera& camera) {
     if (picture.closing == nullptr) return 1;
     const int samples =
@@ -82,8 +88,9 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       camera(description, sheet.cell_width(), sheet.cell_height()),
       placed(place_bodies(picture, bodies, camera.origin())),
       lights(picture.lights, camera.origin()),
-      shading(picture, placed, lights),
-      transport(picture, placed, lights, shading),
+      tree(tree_of(picture, placed, lights)),
+      shading(picture, placed, tree, lights),
+      transport(picture, placed, tree, lights, shading),
       rays(description, camera, sheet) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)

@@ -16,6 +16,7 @@ struct Instant {
     Camera camera;  ///< of a cell
     PlacedBodies placed;
     LightSet lights;
+    BodyTree tree;  ///< empty where there are neither shadows nor rays of the transport's
     Shading shading;
     LightTransport transport;
     CameraRays rays;

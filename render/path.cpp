@@ -24,7 +24,9 @@ bool is_in_disc(const LightDisc& disc, const Vec4& direction) {
     return (direction - disc.toward).norm() <= 2 * std::sin(0.5 * disc.angle);
 }
 
-bool needs_rays(const Picture& picture) {
+}  // namespace
+
+bool LightTransport::needs_rays(const Picture& picture) {
     if (picture.settings.integrator == Integrator::kPath) return true;
     return std::any_of(picture.appearance.begin(), picture.appearance.end(),
                        [&](const Appearance& a) {
@@ -32,12 +34,10 @@ bool needs_rays(const Picture& picture) {
                        });
 }
 
-}  // namespace
-
 LightTransport::LightTransport(const Picture& picture, const PlacedBodies& placed,
-                               const LightSet& lights, const Shading& shading)
+                               const BodyTree& tree, const LightSet& lights, const Shading& shading)
     : picture_(picture), lights_(lights), shading_(shading), glass_(picture, placed) {
-    if (needs_rays(picture)) scene_.emplace(placed, picture.settings);
+    if (needs_rays(picture)) scene_.emplace(placed, tree, picture.settings);
 }
 
 Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& origin,

@@ -27,9 +27,13 @@ namespace tesserae::render {
 /// angle are seen by all but view rays.
 class LightTransport {
   public:
+    /// Whether any ray but view rays and those of Shading's shadows is traced.
+    static bool needs_rays(const Picture& picture);
+
     /// All must outlive it.
-    LightTransport(const Picture& picture, const PlacedBodies& placed, const LightSet& lights,
-                   const Shading& shading);
+    /// @param tree   of the bodies; nothing asks it unless needs_rays()
+    LightTransport(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+                   const LightSet& lights, const Shading& shading);
 
     /// @param first       what a view ray met, if any body
     /// @param origin      of that ray, relative to the camera, world axes

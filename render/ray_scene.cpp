@@ -1,15 +1,6 @@
 #include "render/ray_scene.hpp"
 
-#include <limits>
-
 namespace tesserae::render {
-
-RayScene::RayScene(const PlacedBodies& placed, const Settings& settings)
-    : placed_(placed), settings_(settings), tree_(placed) {
-    for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
-        if (placed.bodies[i].radius == std::numeric_limits<double>::infinity())
-            unbounded_.push_back(i);
-}
 
 Hit RayScene::nearest(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
                       FrameStats& stats) const {
@@ -23,7 +14,7 @@ Hit RayScene::nearest(const Vec4& origin, const Vec4& direction, double limit, s
         }
         return true;
     };
-    for (const std::uint32_t body : unbounded_) visit(body);
+    for (const std::uint32_t body : tree_.unbounded()) visit(body);
     tree_.for_each_on_ray(origin, direction, limit, visit);
     return hit;
 }
@@ -36,7 +27,7 @@ bool RayScene::is_blocked(const Vec4& origin, const Vec4& direction, double limi
                   hit_distance(placed_, body, origin, direction, limit, settings_, stats) < kMiss;
         return !blocked;
     };
-    for (const std::uint32_t body : unbounded_)
+    for (const std::uint32_t body : tree_.unbounded())
         if (!clears(body)) return true;
     tree_.for_each_on_ray(origin, direction, limit, clears);
     return blocked;

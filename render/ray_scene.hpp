@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "render/body_tree.hpp"
 #include "render/intersect.hpp"
@@ -14,8 +13,9 @@ class RayScene {
   public:
     static constexpr std::uint32_t kNoBody = ~std::uint32_t{0};
 
-    /// @param placed, settings   must outlive it
-    RayScene(const PlacedBodies& placed, const Settings& settings);
+    /// @param tree   of the bodies; it must outlive this, like the others
+    RayScene(const PlacedBodies& placed, const BodyTree& tree, const Settings& settings)
+        : placed_(placed), tree_(tree), settings_(settings) {}
 
     /// The nearest body that a ray meets no farther than `limit` [m]; equal distances go to the
     /// lower id. The origin is relative to the camera, the direction unit, both in world axes.
@@ -30,9 +30,8 @@ class RayScene {
 
   private:
     const PlacedBodies& placed_;
+    const BodyTree& tree_;
     const Settings& settings_;
-    BodyTree tree_;
-    std::vector<std::uint32_t> unbounded_;
 };
 
 }  // namespace tesserae::render

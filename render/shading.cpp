@@ -27,9 +27,10 @@ Color albedo_at(const Material& m, const Vec4& point) {
     return is_odd(sum) ? m.pattern_albedo : m.albedo;
 }
 
-Shading::Shading(const Picture& picture, const PlacedBodies& placed, const LightSet& lights)
+Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+                 const LightSet& lights)
     : picture_(picture), placed_(placed), lights_(lights) {
-    if (!lights.is_empty()) shadows_.emplace(placed);
+    if (!lights.is_empty()) shadows_.emplace(placed, tree);
 }
 
 Surface Shading::surface(const Hit& hit, const Vec4& origin, const Vec4& direction) const {

@@ -21,8 +21,10 @@ Color albedo_at(const Material& material, const Vec4& point);
 /// unoccluded sky.
 class Shading {
   public:
+    /// @param tree     of the bodies; without lights that cast shadows nothing asks it
     /// @param lights   must outlive it, like the others
-    Shading(const Picture& picture, const PlacedBodies& placed, const LightSet& lights);
+    Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+            const LightSet& lights);
 
     /// Where a ray meets a body.
     /// @param origin      of the ray, relative to the camera

@@ -183,12 +183,6 @@ double visible_part(double x) {
     return 0.25 * (2 + 3 * x - x * x * x);
 }
 
-Shadows::Shadows(const PlacedBodies& placed) : placed_(placed), tree_(placed) {
-    for (std::uint32_t i = 0; i < placed.bodies.size(); ++i)
-        if (placed.bodies[i].radius == std::numeric_limits<double>::infinity())
-            unbounded_.push_back(i);
-}
-
 bool Shadows::is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const {
     if (light.limit == kMiss) return false;
     const PlacedBody& b = placed_.bodies[body];
@@ -203,7 +197,7 @@ bool Shadows::is_hidden(const LightDisc& light, const Vec4& point, std::uint32_t
                  rim_sine(placed_, body, point, light.toward, light.cone, light.limit, stats) < 0;
         return !hidden;
     };
-    for (std::uint32_t body : unbounded_)
+    for (std::uint32_t body : tree_.unbounded())
         if (!clears(body)) return true;
     tree_.for_each_on_ray(point, light.toward, light.limit, clears);
     return hidden;
@@ -227,7 +221,7 @@ double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint3
         }
         return least > -light.cone.sine;
     };
-    for (std::uint32_t body : unbounded_)
+    for (std::uint32_t body : tree_.unbounded())
         if (!narrow(body)) return 0;
     tree_.for_each_in_cone(point, light.toward, cone, narrow);
     if (least <= -light.cone.sine) return 0;

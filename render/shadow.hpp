@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "render/body_tree.hpp"
 #include "render/frame.hpp"
@@ -48,8 +46,8 @@ double visible_part(double x);
 /// between its near side and its rim, is decided by that.
 class Shadows {
   public:
-    /// @param placed   must outlive it
-    explicit Shadows(const PlacedBodies& placed);
+    /// @param tree   of the bodies; it must outlive this, like them
+    Shadows(const PlacedBodies& placed, const BodyTree& tree) : placed_(placed), tree_(tree) {}
 
     /// @param point   relative to the camera, world axes, on the surface of body `on`. A convex
     /// body
@@ -65,8 +63,7 @@ class Shadows {
     bool is_behind(const LightDisc& light, const Vec4& point, std::uint32_t body) const;
 
     const PlacedBodies& placed_;
-    BodyTree tree_;
-    std::vector<std::uint32_t> unbounded_;
+    const BodyTree& tree_;
 };
 
 }  // namespace tesserae::render

@@ -73,9 +73,10 @@ TestScene cloud(std::uint64_t seed, int count, double spread, double least, doub
 void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double spread, Rays& count) {
     Random random(seed);
     const PlacedBodies placed = place_bodies(scene.picture(), scene.camera.position);
+    const BodyTree tree(placed);
     for (const Intersector intersector : {Intersector::kAnalytic, Intersector::kTrace}) {
         scene.settings.intersector = intersector;
-        const RayScene rays(placed, scene.settings);
+        const RayScene rays(placed, tree, scene.settings);
         const auto bodies = static_cast<std::uint32_t>(placed.bodies.size());
         for (int i = 0; i < rays_each; ++i) {
             Vec4 origin = random_vector(random, spread) - scene.camera.position;
@@ -148,7 +149,8 @@ TEST(RayScene, BodiesInOnePlaceAndOnAGrid) {
     const int in_heap = count.hit;
     EXPECT_GT(in_heap, 1500);
     const PlacedBodies placed = place_bodies(grid.picture(), Vec4::Zero());
-    const RayScene rays(placed, grid.settings);
+    const BodyTree tree(placed);
+    const RayScene rays(placed, tree, grid.settings);
     Random random(5);
     for (int i = 0; i < 20000; ++i) {
         Vec4 origin;
@@ -167,7 +169,8 @@ TEST(RayScene, NoBodiesOneBodyOnlyPlanes) {
         if (kind == 1) scene.add(Hypersphere{1}, {0, 0, 5, 0});
         if (kind == 2) scene.add(Hyperplane{-Vec4::UnitZ(), -4}, Vec4::Zero());
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
-        const RayScene rays(placed, scene.settings);
+        const BodyTree tree(placed);
+        const RayScene rays(placed, tree, scene.settings);
         FrameStats stats;
         const Hit hit = rays.nearest(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats);
         EXPECT_EQ(hit.distance, kind == 0 ? kMiss : 4);

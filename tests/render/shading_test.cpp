@@ -22,7 +22,8 @@ Shaded shade(const TestScene& scene, const Vec4& direction) {
     const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
     const Picture picture = scene.picture();
     const LightSet lights(picture.lights, Vec4::Zero());
-    const Shading shading(picture, placed, lights);
+    const BodyTree tree(placed);
+    const Shading shading(picture, placed, tree, lights);
     Shaded s;
     Hit hit;
     for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {

@@ -204,8 +204,9 @@ TEST(SunVisibility, BehindAPlaneMatchesRays) {
             const double height = x * angle * kDegree;
             const Vec4 toward(0.6 * std::cos(height), std::sin(height), 0, 0.8 * std::cos(height));
             FrameStats stats;
-            const double visible = Shadows(placed).visibility(sun_disc(sun_at(toward, angle)),
-                                                              Vec4::Zero(), kNoBody, stats);
+            const double visible =
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(toward, angle)), Vec4::Zero(), kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle * kDegree, kCount,
                                                 [](const Vec4& d) { return d.y() < 0; });
             EXPECT_NEAR(visible, rays, 5 * 0.5 / std::sqrt(kCount) + std::pow(angle * kDegree, 2))
@@ -230,8 +231,9 @@ TEST(SunVisibility, BehindALargeSphereMatchesRays) {
             scene.add(Hypersphere{radius}, centre);
             const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
             FrameStats stats;
-            const double visible = Shadows(placed).visibility(sun_disc(sun_at(toward, 2)),
-                                                              Vec4::Zero(), kNoBody, stats);
+            const double visible =
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(toward, 2)), Vec4::Zero(), kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle, kCount, [&](const Vec4& d) {
                 return d.w() > std::cos(alpha * kDegree);
             });
@@ -246,8 +248,9 @@ TEST(SunVisibility, OfASmallSphereIsItsRimsFormula) {
     scene.add(Hypersphere{0.05}, {0, 0, 0, 5});
     const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
     FrameStats stats;
-    const double visible = Shadows(placed).visibility(sun_disc(sun_at(Vec4::UnitW(), 2)),
-                                                      Vec4::Zero(), kNoBody, stats);
+    const double visible =
+        Shadows(placed, BodyTree(placed))
+            .visibility(sun_disc(sun_at(Vec4::UnitW(), 2)), Vec4::Zero(), kNoBody, stats);
     EXPECT_NEAR(visible, visible_part(-std::asin(0.01) / (2 * kDegree)), 1e-12);
 }
 
@@ -308,7 +311,8 @@ TEST(Shadows, TreeLosesNoBody) {
                       random_vector(random, 4), random_rotor(random));
         if (round % 2 == 1) scene.add(Hyperplane{Vec4::UnitY(), -4}, Vec4::Zero());
         const PlacedBodies placed = place_bodies(scene.picture(), random_vector(random, 4));
-        const Shadows shadows(placed);
+        const BodyTree tree(placed);
+        const Shadows shadows(placed, tree);
         for (int i = 0; i < 200; ++i) {
             const Vec4 point = random_vector(random, 6);
             const double angle = i % 4 == 0 ? 0 : uniform(random, 0.1, 30);
@@ -364,13 +368,13 @@ TEST(Shadows, SharedSurfacesAreLit) {
         for (double angle : {0.0, 2.0}) {
             // A soft sun is whole from its own half-angle above the surface on.
             if (toward.dot(normal) < std::sin(2.1 * kDegree)) continue;
-            EXPECT_EQ(
-                Shadows(placed).visibility(sun_disc(sun_at(toward, angle)), point, kNoBody, stats),
-                1)
+            EXPECT_EQ(Shadows(placed, BodyTree(placed))
+                          .visibility(sun_disc(sun_at(toward, angle)), point, kNoBody, stats),
+                      1)
                 << i;
-            EXPECT_EQ(
-                Shadows(placed).visibility(sun_disc(sun_at(-toward, angle)), point, kNoBody, stats),
-                0)
+            EXPECT_EQ(Shadows(placed, BodyTree(placed))
+                          .visibility(sun_disc(sun_at(-toward, angle)), point, kNoBody, stats),
+                      0)
                 << i;
         }
     }
@@ -381,7 +385,8 @@ TEST(Shadows, ThatLeaveTheSliceFindBodiesOutsideIt) {
     TestScene scene;
     scene.add(Hypersphere{1}, {0, 0, 0, 3});
     const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
-    const Shadows shadows(placed);
+    const BodyTree tree(placed);
+    const Shadows shadows(placed, tree);
     FrameStats stats;
     for (double angle : {0.0, 5.0}) {
         EXPECT_EQ(shadows.visibility(sun_disc(sun_at(Vec4::UnitW(), angle)), Vec4::Zero(), kNoBody,

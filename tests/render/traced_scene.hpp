@@ -13,6 +13,7 @@ struct TracedScene {
     TestScene scene;
     Picture picture;
     PlacedBodies placed;
+    BodyTree tree;
     LightSet lights;
     Shading shading;
     LightTransport transport;
@@ -22,9 +23,10 @@ struct TracedScene {
         : scene(s),
           picture(scene.picture()),
           placed(place_bodies(picture, Vec4::Zero())),
+          tree(placed),
           lights(scene.lights, Vec4::Zero()),
-          shading(picture, placed, lights),
-          transport(picture, placed, lights, shading) {}
+          shading(picture, placed, tree, lights),
+          transport(picture, placed, tree, lights, shading) {}
     TracedScene(const TracedScene&) = delete;
 
     /// The nearest body, tried one by one.
