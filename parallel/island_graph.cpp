@@ -3,7 +3,7 @@
 #include <tbb/flow_graph.h>
 
 #include <algorithm>
-#include <numeric>
+#include <vector>
 
 namespace tesserae::parallel {
 namespace {
@@ -35,7 +35,7 @@ struct IslandGraph::Graph {
     StepData* step = nullptr;
     Work *of_plain = nullptr, *of_coloured = nullptr;
     Trace* trace = nullptr;
-    std::vector<std::uint32_t> order;  ///< islands, by falling size, then number
+    std::vector<std::uint32_t> order;  ///< islands, those worth a message first, by falling size
     tbb::flow::graph graph;
     tbb::flow::function_node<Message> node;
 };
@@ -54,11 +54,16 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
     const std::vector<std::uint32_t>& first = step.islands.first;
     const auto size = [&](std::uint32_t island) { return first[island + 1] - first[island]; };
 
-    g.order.resize(step.islands.size());
-    std::iota(g.order.begin(), g.order.end(), 0u);
+    // Those worth a message by falling size. The order of the small ones is all the same.
+    g.order.clear();
+    const auto count = static_cast<std::uint32_t>(step.islands.size());
+    for (std::uint32_t island = 0; island < count; ++island)
+        if (size(island) >= kContactsOfMessage) g.order.push_back(island);
     std::sort(g.order.begin(), g.order.end(), [&](std::uint32_t i, std::uint32_t j) {
         return size(i) != size(j) ? size(i) > size(j) : i < j;
     });
+    for (std::uint32_t island = 0; island < count; ++island)
+        if (size(island) < kContactsOfMessage) g.order.push_back(island);
 
     for (std::size_t begin = 0; begin < g.order.size();) {
         Graph::Message message{begin, begin, 0};

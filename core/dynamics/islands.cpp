@@ -41,21 +41,25 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     const std::vector<Contact>& contacts = step.contacts;
     TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
     const auto movable = [&](BodyId id) { return simulation.type_of(id).movable; };
-    const auto member = [&](const Contact& c) { return movable(c.a) ? c.a : c.b; };
 
-    // Join, the lower root above the higher one.
+    // Join, the lower root above the higher one. Contacts are large: only here are they read.
     parent_.resize(simulation.bodies.size());
     std::iota(parent_.begin(), parent_.end(), BodyId{0});
-    for (const Contact& c : contacts) {
-        if (!movable(c.a) || !movable(c.b)) continue;
-        const BodyId i = root_of(c.a), j = root_of(c.b);
-        parent_[std::max(i, j)] = std::min(i, j);
+    member_.resize(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Contact& c = contacts[i];
+        member_[i] = movable(c.a) ? c.a : c.b;
+        const bool again = i > 0 && c.a == contacts[i - 1].a && c.b == contacts[i - 1].b;
+        if (again || !movable(c.a) || !movable(c.b)) continue;
+        const BodyId p = root_of(c.a), q = root_of(c.b);
+        parent_[std::max(p, q)] = std::min(p, q);
     }
+    for (BodyId& member : member_) member = root_of(member);
 
     // Number the roots that have contacts, ascending.
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     number_.assign(parent_.size(), kNone);
-    for (const Contact& c : contacts) number_[root_of(member(c))] = 0;
+    for (const BodyId root : member_) number_[root] = 0;
     std::uint32_t count = 0;
     for (std::uint32_t& number : number_)
         if (number != kNone) number = count++;
@@ -63,11 +67,11 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     // Counting sort of the contacts by island; it keeps their order within each.
     Islands& islands = step.islands;
     islands.first.assign(count + 1, 0);
-    for (const Contact& c : contacts) ++islands.first[number_[root_of(member(c))] + 1];
+    for (const BodyId root : member_) ++islands.first[number_[root] + 1];
     std::partial_sum(islands.first.begin(), islands.first.end(), islands.first.begin());
     islands.contacts.resize(contacts.size());
     for (std::uint32_t i = 0; i < contacts.size(); ++i)
-        islands.contacts[islands.first[number_[root_of(member(contacts[i]))]]++] = i;
+        islands.contacts[islands.first[number_[member_[i]]]++] = i;
     // Filling moved each start to its island's end: shift them back.
     std::shift_right(islands.first.begin(), islands.first.end(), 1);
     islands.first.front() = 0;
