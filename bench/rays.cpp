@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -102,17 +103,40 @@ struct Yardsticks {
     double loop, embree;
 };
 
+/// The rates [million rays a second] of one intersector at one number of bodies, by kind of rays.
+struct Rates {
+    int bodies = 0;
+    std::map<std::string, double> by_kind;
+};
+
 class Report {
   public:
-    Report(const char* intersector, int bodies, const Yardsticks& y)
-        : intersector_(intersector), bodies_(bodies), yardsticks_(y) {}
+    /// @param rates   of the last number of bodies; of this one in the end
+    Report(const char* intersector, int bodies, const Yardsticks& y, Rates& rates)
+        : intersector_(intersector), bodies_(bodies), yardsticks_(y), last_(rates), rates_(rates) {
+        rates_ = {bodies, {}};
+    }
 
-    void row(const char* rays, const Measured& m) const {
+    void row(const char* rays, const Measured& m) {
         const double rate = 1e-6 * m.rays / m.time.median;
         std::printf("%s,%d,%s,%.3g,%.1f,%.2f,%.3g,%.3g\n", intersector_, bodies_, rays, rate,
                     m.time.spread, static_cast<double>(m.stats.distance_evaluations) / m.rays,
                     rate / yardsticks_.loop, rate / yardsticks_.embree);
         std::fflush(stdout);
+        rates_.by_kind[rays] = rate;
+    }
+    /// What the rates are to be divided by on another machine.
+    void yardsticks() const {
+        std::printf("%s,%d,loop,%.3g,,,1,\n%s,%d,embree_spheres,%.3g,,,,1\n", intersector_, bodies_,
+                    yardsticks_.loop, intersector_, bodies_, yardsticks_.embree);
+    }
+    /// By what the time of a ray grew since the last number of bodies, over the growth of the
+    /// number's logarithm: 1 where the time is proportional to it.
+    void growth() const {
+        for (const auto& [kind, rate] : last_.by_kind)
+            std::printf(
+                "%s,%d,growth_%s,%.3g,,,,\n", intersector_, bodies_, kind.c_str(),
+                rate / rates_.by_kind.at(kind) * std::log(last_.bodies) / std::log(bodies_));
     }
     void build(const char* what, const Time& t) const {
         std::printf("%s,%d,%s,%.3g,%.1f,,,\n", intersector_, bodies_, what, 1e3 * t.median,
@@ -123,6 +147,8 @@ class Report {
     const char* intersector_;
     int bodies_;
     Yardsticks yardsticks_;
+    Rates last_;
+    Rates& rates_;
 };
 
 std::vector<ViewRay> view_rays(const Camera& camera) {
@@ -273,12 +299,13 @@ std::vector<Vec4> bounces(const std::vector<Surface>& surfaces) {
     return directions;
 }
 
-void measure(int count, Intersector intersector) {
+void measure(int count, Intersector intersector, Rates& rates) {
     const Cloud cloud(count, intersector);
     const Picture picture = cloud.picture();
     const FrameScene scene(picture, true);
-    const Report report(intersector == Intersector::kTrace ? "trace" : "analytic", count,
-                        {loop_rate(), embree_rate(scene)});
+    Report report(intersector == Intersector::kTrace ? "trace" : "analytic", count,
+                  {loop_rate(), embree_rate(scene)}, rates);
+    report.yardsticks();
     std::vector<Surface> lit;
     const Measured view = through_lists(scene, lit);
     report.row("view", view);
@@ -317,6 +344,7 @@ void measure(int count, Intersector intersector) {
                      ViewScene(scene.opening().placed, scene.opening().camera, picture.settings, {},
                                0);
                  }));
+    report.growth();
 }
 
 }  // namespace
@@ -332,9 +360,10 @@ int main(int argc, char** argv) {
         "over_loop,over_embree_spheres");
     parallel::Threads threads(1);
     threads.run([&] {
-        for (const int count : counts)
-            for (const auto intersector :
-                 {render::Intersector::kAnalytic, render::Intersector::kTrace})
-                bench::measure(count, intersector);
+        bench::Rates analytic, trace;
+        for (const int count : counts) {
+            bench::measure(count, render::Intersector::kAnalytic, analytic);
+            bench::measure(count, render::Intersector::kTrace, trace);
+        }
     });
 }

@@ -44,9 +44,11 @@ Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& 
                                const Vec4& direction, const Sampler& sampler,
                                FrameStats& stats) const {
     const bool is_direct = picture_.settings.integrator == Integrator::kDirect;
-    // The usual view ray of the direct picture needs nothing of what follows.
-    if (is_direct && first && lights_.spheres.empty() && !is_specular(*first->material))
-        return shading_.radiance(*first, -direction, stats);
+    // The usual view rays of the direct picture need nothing of what follows.
+    if (is_direct && lights_.spheres.empty()) {
+        if (!first) return lights_.sky;
+        if (!is_specular(*first->material)) return shading_.radiance(*first, -direction, stats);
+    }
 
     const auto groups =
         1 + static_cast<std::uint32_t>(lights_.suns.size() + lights_.spheres.size());

@@ -42,22 +42,22 @@ double seen_from_within(double distance, double slope, double scale) {
 /// Every sample bounds the ratio from above, and the tangents at both ends of the interval from
 /// below; the next t is a secant step for f' t - f, with the Illinois rule against standing still.
 /// A limit below `reach` ends the ray there, where the ratio may still be falling.
+/// @param middle   where along the ray the search steps first: near the body's middle
+/// @param most     no larger result is told from this one
 template <class Evaluate>
-double least_ratio(const Evaluate& f, double reach, double limit, const Cone& cone) {
+double least_ratio(const Evaluate& f, double middle, double reach, double limit, const Cone& cone,
+                   double most) {
     const bool is_cut = limit < reach;
     if (is_cut) reach = limit;
     Sample low = f(0);
     if (low.value <= kTouching * reach) return seen_from_within(low.value, low.slope, reach);
-    const auto clears_from = [&](const Sample& s) {
-        return s.slope - s.excess() / reach >= cone.sine;
-    };
+    const auto clears_from = [&](const Sample& s) { return s.slope - s.excess() / reach >= most; };
     if (clears_from(low)) return 1;
 
     // Step out until the ratio has stopped falling.
     Sample high = low;
     double upper = 1;
-    for (double t = std::min(reach, std::max(-low.slope * low.value, low.value));;
-         t = std::min(reach, 2 * t)) {
+    for (double t = std::min(reach, std::max(middle, low.value));; t = std::min(reach, 2 * t)) {
         high = f(t);
         upper = std::min(upper, high.value / t);
         if (upper <= -cone.sine) return upper;
@@ -75,7 +75,7 @@ double least_ratio(const Evaluate& f, double reach, double limit, const Cone& co
         if (!(bend > 0)) return upper;
         const double cross = (high.excess() - low.excess()) / bend;
         const double lower = low.slope - low.excess() / cross;
-        if (lower >= cone.sine) return lower;
+        if (lower >= most) return lower;
         if (upper - lower <= kRimTolerance * cone.sine) return upper;
 
         double t = (low.t * high_excess - high.t * low_excess) / (high_excess - low_excess);
@@ -117,7 +117,7 @@ bool may_meet_box(const Vec4& half, const Vec4& origin, const Vec4& direction, c
 
 template <class S>
 double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, double radius,
-                   const Cone& cone, double limit, FrameStats& stats) {
+                   const Cone& cone, double limit, double most, FrameStats& stats) {
     const auto f = [&](double t) {
         const Vec4 point = origin + t * direction;
         ++stats.distance_evaluations;
@@ -126,7 +126,8 @@ double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, do
     if constexpr (S::kBounded) {
         const Vec4 half = half_extents(shape, Mat4::Identity());
         if (!may_meet_box(half, origin, direction, cone)) return 1;
-        return least_ratio(f, (origin.norm() + radius) / cone.cosine * (1 + 1e-9), limit, cone);
+        return least_ratio(f, -origin.dot(direction),
+                           (origin.norm() + radius) / cone.cosine * (1 + 1e-9), limit, cone, most);
     } else {
         // A half-space: f is linear, and f/t falls toward its slope.
         const Sample s = f(0);
@@ -136,7 +137,7 @@ double rim_sine_of(const S& shape, const Vec4& origin, const Vec4& direction, do
 }
 
 double rim_sine_of(const Hypersphere&, const Vec4& origin, const Vec4& direction, double radius,
-                   const Cone&, double limit, FrameStats&) {
+                   const Cone&, double limit, double, FrameStats&) {
     const double square = origin.squaredNorm();
     if (square <= radius * radius) {
         const double distance = std::sqrt(square);
@@ -166,13 +167,14 @@ SunDisc sun_disc(const Sun& sun) {
 }
 
 double rim_sine(const PlacedBodies& placed, std::uint32_t index, const Vec4& origin,
-                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats) {
+                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats,
+                double most) {
     const PlacedBody& body = placed.bodies[index];
     return std::visit(
         [&](const auto& shape) {
             return rim_sine_of(shape, placed.point_to_body(body, origin),
                                placed.direction_to_body(body, direction), body.radius, cone, limit,
-                               stats);
+                               std::min(most, cone.sine), stats);
         },
         *body.shape);
 }
@@ -214,7 +216,7 @@ double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint3
     const auto narrow = [&](std::uint32_t body) {
         if (body == on || is_behind(light, point, body)) return true;
         const double sine =
-            rim_sine(placed_, body, point, light.toward, light.cone, light.limit, stats);
+            rim_sine(placed_, body, point, light.toward, light.cone, light.limit, stats, least);
         if (sine < least) {
             least = sine;
             cone = {sine, std::sqrt(std::max(0.0, 1 - sine * sine))};

@@ -31,8 +31,10 @@ SunDisc sun_disc(const Sun& sun);
 ///               it), and beyond only the right side of it. With angle 0 only the sign matters
 /// @param limit  only what comes before this distance along the ray counts [m]: the least f(t)/t
 ///               over 0 < t <= limit
+/// @param most   nor do values from here on matter: the result is then anything that is no less
 double rim_sine(const PlacedBodies& placed, std::uint32_t body, const Vec4& origin,
-                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats);
+                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats,
+                double most = 1);
 
 /// The part of a light's disc that lies beyond a flat rim at angle x * half-angle from its middle,
 /// x in [-1, 1] (0 hidden, 1 clear). The disc is a 3-ball of directions, and a plane cuts

@@ -22,7 +22,7 @@ void interpolate_towards(Bodies& bodies, const Bodies& after, double fraction) {
 
 Poses::Poses(const Scene& scene, const std::vector<int>& frames,
              const std::filesystem::path& trajectory)
-    : scene_(scene), before_(scene.bodies) {
+    : before_(scene.bodies) {
     if (trajectory.empty()) return;
     trajectory_ = std::make_unique<TrajectoryReader>(trajectory);
     const TrajectoryHeader& header = trajectory_->header();

@@ -27,7 +27,6 @@ class Poses {
   private:
     std::uint64_t row_of(std::uint64_t step) const;
 
-    const Scene& scene_;
     std::unique_ptr<TrajectoryReader> trajectory_;
     Bodies before_, after_;
 };

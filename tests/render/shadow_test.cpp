@@ -114,6 +114,13 @@ TEST(RimSine, IsTheLeastRatioOfDistanceAlongTheRay) {
         }
         const double expected = std::min(ratio(a), ratio(best));
         const double found = rim_sine(placed, 0, Vec4::Zero(), d, cone, kMiss, stats);
+        // A search that may end sooner tells the same below its end, and only the side beyond.
+        const double most = uniform(random, -1, 1) * cone.sine;
+        const double sooner = rim_sine(placed, 0, Vec4::Zero(), d, cone, kMiss, stats, most);
+        if (found < most)
+            EXPECT_EQ(sooner, found) << i;
+        else
+            EXPECT_GE(sooner, most) << i;
         if (std::abs(expected) < cone.sine) {
             ++inside_cone;
             EXPECT_NEAR(found, expected, 1.01e-6 * cone.sine + 1e-9) << i;
