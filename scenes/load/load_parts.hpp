@@ -32,9 +32,4 @@ void require_view(const Scene& scene, const Origin& origin);
 void load_lights(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 void load_render(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 
-/// Refuses a value of a key whose feature is not built yet, unless it is the default.
-inline void require_built(TableReader& table, std::string_view key, bool is_default) {
-    if (!is_default) table.fail(key, "not yet built; leave it at its default");
-}
-
 }  // namespace tesserae::scenes
