@@ -41,7 +41,7 @@ bool fit_floats(const Simulation& simulation) {
         const int exponent = std::ilogb(type.mass);
         least = std::min(least, exponent), most = std::max(most, exponent);
     }
-    return most - least <= 60 || most < least;
+    return most < least || most - least <= 60;
 }
 
 void Colouring::begin(const Simulation& simulation, StepData& step) {
