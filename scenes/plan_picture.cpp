@@ -50,25 +50,6 @@ void decide_light(const Scene& scene, std::uint64_t visible, Plan& plan) {
                                   : "nothing is a mirror or glass"});
 }
 
-/// The bodies that view rays can meet in the first frame. Left uncounted where counting takes long.
-void decide_slice(const Scene& scene, std::uint64_t visible, Plan& plan) {
-    constexpr std::uint64_t kMostCounted = 1'000'000;
-    if (plan.bodies > kMostCounted) return;
-    const render::CameraDescription camera = camera_at(scene.camera, scene.camera_keys, 0);
-    const double half = 0.5 * camera.slice_thickness;
-    const render::Picture picture = {scene.bodies, scene.appearance, scene.materials,
-                                     camera,       scene.lights,     scene.render};
-    const render::Camera frame(camera, scene.render.width, scene.render.height);
-    const auto seen = render::slice_bounds(render::place_bodies(picture, frame.origin()), frame,
-                                           scene.render.max_distance, {-half, half})
-                          .size();
-    plan.decisions.push_back(
-        {"bodies off the slice", false,
-         fmt::format("{} of {} visible bodies of frame 0 are met by no view ray, only by shadows "
-                     "and reflections",
-                     visible - seen, visible)});
-}
-
 void decide_camera(const Scene& scene, Plan& plan) {
     const render::CameraDescription& c = scene.camera;
     const auto add = [&](const char* part, bool needed, const std::string& reason) {
@@ -108,7 +89,6 @@ void decide_picture(const Scene& scene, Plan& plan) {
         plan.decisions.push_back(
             {"invisible bodies in the picture", false,
              fmt::format("{} bodies have visible = false", plan.bodies - visible)});
-    decide_slice(scene, visible, plan);
     decide_camera(scene, plan);
     decide_light(scene, visible, plan);
     const render::Channels& c = scene.render.channels;
@@ -119,6 +99,24 @@ void decide_picture(const Scene& scene, Plan& plan) {
     channel(c.color, "color"), channel(c.depth, "depth"), channel(c.normal, "normal");
     channel(c.albedo, "albedo"), channel(c.id, "id"), channel(c.position, "position");
     channel(c.variance, "variance"), channel(c.samples, "samples");
+}
+
+void count_off_slice(const Scene& scene, Plan& plan) {
+    const auto visible =
+        count_if_type(scene.bodies, [&](auto t) { return scene.appearance[t].visible; });
+    const render::CameraDescription camera = camera_at(scene.camera, scene.camera_keys, 0);
+    const double half = 0.5 * camera.slice_thickness;
+    const render::Picture picture = {scene.bodies, scene.appearance, scene.materials,
+                                     camera,       scene.lights,     scene.render};
+    const render::Camera frame(camera, scene.render.width, scene.render.height);
+    const auto seen = render::slice_bounds(render::place_bodies(picture, frame.origin()), frame,
+                                           scene.render.max_distance, {-half, half})
+                          .size();
+    plan.decisions.push_back(
+        {"bodies off the slice", false,
+         fmt::format("{} of {} visible bodies of frame 0 are met by no view ray, only by shadows "
+                     "and reflections",
+                     visible - seen, visible)});
 }
 
 }  // namespace tesserae::scenes

@@ -14,5 +14,7 @@ inline std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
 
 /// Appends what the picture needs and what is left out of it.
 void decide_picture(const Scene& scene, Plan& plan);
+/// Appends how many bodies the camera's slice misses. Looks at every body: only for who asks.
+void count_off_slice(const Scene& scene, Plan& plan);
 
 }  // namespace tesserae::scenes

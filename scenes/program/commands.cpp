@@ -14,6 +14,7 @@
 #include "scenes/generate.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan.hpp"
+#include "scenes/plan_picture.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"
@@ -156,7 +157,8 @@ void film_command(const CommandLine& line) {
 }
 
 void plan_command(const CommandLine& line) {
-    const Work work(line);
+    Work work(line);
+    count_off_slice(work.scene, work.plan);
     if (line.json)
         fmt::print("{}\n", to_json(work.plan).dump());
     else
