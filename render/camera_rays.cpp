@@ -36,14 +36,13 @@ std::optional<SliceSheet::Cell> SliceSheet::cell_of(int x, int y) const {
     return Cell{column * cell_width_, row * cell_height_, part * thickness_};
 }
 
-CameraRays::CameraRays(const CameraDescription& description, const Camera& camera,
-                       const SliceSheet& sheet)
+CameraRays::CameraRays(const CameraDescription& description, const Camera& camera)
     : camera_(camera),
       aperture_(description.aperture),
       focus_(description.focus_distance > 0 ? description.focus_distance
                                             : (description.look_at - description.position).norm()),
       thickness_(description.slice_thickness),
-      is_sheet_(sheet.cell_of(0, 0)->fourth != 0) {}
+      is_sheet_(description.slices > 1) {}
 
 bool CameraRays::is_pinhole() const { return aperture_ == 0 && thickness_ == 0; }
 

@@ -34,7 +34,7 @@ class SliceSheet {
 class CameraRays {
   public:
     /// @param camera   of one cell, as it is at the instant of the rays
-    CameraRays(const CameraDescription& description, const Camera& camera, const SliceSheet& sheet);
+    CameraRays(const CameraDescription& description, const Camera& camera);
 
     /// Every ray starts in the camera's position and lies in its slice.
     bool is_pinhole() const;

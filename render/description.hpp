@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -122,6 +123,9 @@ struct Settings {
     Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;
+
+    /// Of a pixel.
+    int most_samples() const { return noise_target > 0 ? std::max(samples, max_samples) : samples; }
 };
 
 }  // namespace tesserae::render

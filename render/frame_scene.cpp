@@ -22,32 +22,14 @@ CameraDescription between(const CameraDescription& a, const CameraDescription& b
     return c;
 }
 
-Bodies between(const Bodies& a, const Bodies& b, double part) {
-    Bodies c = a;
-    for (BodyId id = 0; id < c.size(); ++id) {
-        c.position[id] += part * (b.position[id] - a.position[id]);
-        if (!(a.rotor[id] == b.rotor[id]))
-            c.rotor[id] = interpolate(a.rotor[id], b.rotor[id], part);
-    }
-    return c;
-}
-
 /// How far a body's picture moves at most, about [pixels].
 double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
     const Bodies &a = picture.bodies, &b = *picture.closing;
     const double moved = (b.position[id] - a.position[id]).norm();
     double turned = 0;
-    if (!(a.rotor[id] == b.rotor[id])) {
-        const double radius = std::visit(
-            [](const auto& s) {
-                if constexpr (std::decay_t<decltype(s)>::kBounded)
-                    return bounding_radius(s);
-                else
-                    return 0.0;
-            },
-            a.type_of(id).shape);
-        turned = radius * norm(log(b.rotor[id] * reverse(a.rotor[id])));
-    }
+    if (!(a.rotor[id] == b.rotor[id]))
+        turned =
+            bounding_radius(a.type_of(id).shape) * norm(log(b.rotor[id] * reverse(a.rotor[id])));
     if (moved + turned == 0) return 0;
     const Vec4 at = camera.to_camera(a.position[id] - camera.origin());
     const double depth = std::max(at.z() - moved, 0.1 * at.head<3>().norm());
@@ -62,9 +44,7 @@ BodyTree tree_of(const Picture& picture, const PlacedBodies& placed, const Light
 
 int instant_count(const Picture& picture, const Camera& camera) {
     if (picture.closing == nullptr) return 1;
-    const int samples =
-        picture.settings.noise_target > 0 ? picture.settings.max_samples : picture.settings.samples;
-    const int most = most_instants(picture.bodies.size(), samples);
+    const int most = most_instants(picture.bodies.size(), picture.settings.most_samples());
     if (!(picture.camera == *picture.closing_camera)) return most;
     double pixels = 0;
     for (BodyId id = 0; id < picture.bodies.size(); ++id)
@@ -91,7 +71,7 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       tree(tree_of(picture, placed, lights)),
       shading(picture, placed, tree, lights),
       transport(picture, placed, tree, lights, shading),
-      rays(description, camera, sheet) {}
+      rays(description, camera) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)
     : picture_(picture),
@@ -100,13 +80,15 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
       wants_color_(wants_color) {
     instants_.push_back(std::make_unique<Instant>(picture, picture.camera, sheet_, picture.bodies));
     const int count = instant_count(picture, opening().camera);
-    if (count > 1)
+    if (count > 1) {
+        Bodies bodies = picture.bodies;
         for (int k = 0; k < count; ++k) {
             const double part = (k + 0.5) / count;
+            interpolate_poses(picture.bodies, *picture.closing, part, bodies);
             instants_.push_back(std::make_unique<Instant>(
-                picture, between(picture.camera, *picture.closing_camera, part), sheet_,
-                between(picture.bodies, *picture.closing, part)));
+                picture, between(picture.camera, *picture.closing_camera, part), sheet_, bodies));
         }
+    }
     const double far = picture.settings.max_distance;
     if (is_pinhole()) {
         slice_ = slice_bounds(opening().placed, opening().camera, far);

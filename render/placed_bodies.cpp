@@ -1,23 +1,10 @@
 #include "render/placed_bodies.hpp"
 
-#include <limits>
-
 namespace tesserae::render {
 namespace {
 
 bool has_pattern(const Picture& picture, std::uint32_t type) {
     return picture.materials[picture.appearance[type].material].pattern != Pattern::kNone;
-}
-
-double radius_of(const Shape& shape) {
-    return std::visit(
-        [](const auto& s) {
-            if constexpr (std::decay_t<decltype(s)>::kBounded)
-                return bounding_radius(s);
-            else
-                return std::numeric_limits<double>::infinity();
-        },
-        shape);
 }
 
 }  // namespace
@@ -36,7 +23,7 @@ PlacedBodies place_bodies(const Picture& picture, const Bodies& poses, const Vec
             placed.turns.push_back(to_matrix(poses.rotor[id]).transpose());
         }
         placed.bodies.push_back(
-            {poses.position[id] - camera_origin, radius_of(shape), &shape, id, turn});
+            {poses.position[id] - camera_origin, bounding_radius(shape), &shape, id, turn});
     }
     return placed;
 }

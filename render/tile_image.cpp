@@ -172,7 +172,7 @@ Pixel TileRays::pixel(int x, int y) {
 
     const bool is_adaptive = settings.noise_target > 0 && scene_.wants_color();
     const int least = settings.samples;
-    const int most = is_adaptive ? std::max(least, settings.max_samples) : least;
+    const int most = is_adaptive ? settings.most_samples() : least;
     Filtered sum;
     if (most == 1 || c.depth || c.normal || c.position || c.id) {
         const View view = centre(*cell, x, y);

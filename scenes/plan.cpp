@@ -111,7 +111,7 @@ Plan make_plan(const Scene& scene, int threads) {
     const render::Crop crop = r.crop.value_or(render::Crop{0, 0, r.width, r.height});
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
     // With several samples a pixel's centre has a ray of its own, for depth, normal and id.
-    const std::uint64_t samples = r.noise_target > 0 ? r.max_samples : r.samples;
+    const auto samples = static_cast<std::uint64_t>(r.most_samples());
     const std::uint64_t rays = samples == 1 ? 1 : samples + 1;
     plan.view_rays = pixels * rays * plan.frames;
     const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;

@@ -58,11 +58,11 @@ void decide_camera(const Scene& scene, Plan& plan) {
     add("lens", c.aperture > 0,
         c.aperture > 0 ? fmt::format("aperture = {}", c.aperture) : "aperture = 0: a pinhole");
     add("motion blur", c.shutter > 0,
-        c.shutter > 0
-            ? fmt::format("shutter = {}: up to {} instants a frame in which something "
-                          "moves",
-                          c.shutter, render::most_instants(plan.bodies, scene.render.samples))
-            : "shutter = 0");
+        c.shutter > 0 ? fmt::format("shutter = {}: up to {} instants a frame in which something "
+                                    "moves",
+                                    c.shutter,
+                                    render::most_instants(plan.bodies, scene.render.most_samples()))
+                      : "shutter = 0");
     if (c.slices > 1)
         add("several slices", true,
             fmt::format("{} side by side over {} m", c.slices, c.slice_thickness));
@@ -76,7 +76,7 @@ void decide_camera(const Scene& scene, Plan& plan) {
     add("noise target", scene.render.noise_target > 0,
         scene.render.noise_target > 0
             ? fmt::format("{} to {} samples a pixel", scene.render.samples,
-                          std::max(scene.render.samples, scene.render.max_samples))
+                          scene.render.most_samples())
             : fmt::format("every pixel has {} samples", scene.render.samples));
 }
 

@@ -7,18 +7,6 @@
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
-namespace {
-
-/// Moves `bodies` the given fraction of the way to `after`.
-void interpolate_towards(Bodies& bodies, const Bodies& after, double fraction) {
-    for (BodyId id = 0; id < bodies.size(); ++id) {
-        bodies.position[id] += fraction * (after.position[id] - bodies.position[id]);
-        if (!(bodies.rotor[id] == after.rotor[id]))
-            bodies.rotor[id] = interpolate(bodies.rotor[id], after.rotor[id], fraction);
-    }
-}
-
-}  // namespace
 
 Poses::Poses(const Scene& scene, const std::vector<int>& frames,
              const std::filesystem::path& trajectory)
@@ -55,7 +43,7 @@ const Bodies& Poses::at(const FrameInstant& instant) {
     trajectory_->read_row(row_of(instant.step), before_);
     if (instant.fraction > 0) {
         trajectory_->read_row(row_of(instant.step + 1), after_);
-        interpolate_towards(before_, after_, instant.fraction);
+        interpolate_poses(before_, after_, instant.fraction, before_);
     }
     return before_;
 }

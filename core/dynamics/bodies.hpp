@@ -43,4 +43,10 @@ struct Bodies {
     }
 };
 
+/// Positions and rotors on the way from `before` to `after`, those of the same bodies later:
+/// positions linearly, rotors along the shortest way.
+/// @param part      0 to 1 of the way
+/// @param between   gets them, the rest of it stays; may be `before`
+void interpolate_poses(const Bodies& before, const Bodies& after, double part, Bodies& between);
+
 }  // namespace tesserae

@@ -25,7 +25,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.inertia = std::visit(
         [&](const auto& shape) { return plane_inertias(second_moments(shape, type.mass)); },
         type.shape);
-    p.radius = std::visit([](const auto& shape) { return bounding_radius(shape); }, type.shape);
+    p.radius = bounding_radius(type.shape);
     const double least_half_size = std::visit(
         [](const auto& shape) { return half_extents(shape, Mat4::Identity()).minCoeff(); },
         type.shape);

@@ -19,5 +19,9 @@ inline const char* name_of(const Shape& shape) {
 inline bool is_bounded(const Shape& shape) {
     return std::visit([](const auto& s) { return s.kBounded; }, shape);
 }
+/// Of the ball about the centre that holds it [m]; infinite if unbounded.
+inline double bounding_radius(const Shape& shape) {
+    return std::visit([](const auto& s) { return bounding_radius(s); }, shape);
+}
 
 }  // namespace tesserae

@@ -22,8 +22,7 @@ struct WholeFrame {
     Camera camera;
     CameraRays rays;
 
-    explicit WholeFrame(const CameraDescription& d)
-        : camera(d, 200, 100), rays(d, camera, SliceSheet(d, 200, 100)) {}
+    explicit WholeFrame(const CameraDescription& d) : camera(d, 200, 100), rays(d, camera) {}
 };
 
 TEST(CameraRays, OfAPinholeAreTheCamerasOwn) {
@@ -126,7 +125,7 @@ TEST(SliceSheet, EveryCellLooksAlongTheForwardAxisInItsMiddle) {
     d.slices = 4;
     const SliceSheet sheet(d, 400, 200);
     const Camera camera(d, sheet.cell_width(), sheet.cell_height());
-    const CameraRays rays(d, camera, sheet);
+    const CameraRays rays(d, camera);
     for (const auto& [x, y] : {std::pair(0, 0), std::pair(200, 0), std::pair(399, 199)}) {
         const auto cell = *sheet.cell_of(x, y);
         const ViewRay ray = rays.sample(cell, Vec2(cell.x0 + 100, cell.y0 + 50), {0.1, 0.2, 0.3});
