@@ -69,7 +69,8 @@ class Rays {
           placed_(render::place_bodies(picture_, Vec4::Zero())),
           tree_(placed_),
           lights_(s.lights, Vec4::Zero()),
-          shading_(picture_, placed_, tree_, lights_),
+          rough_(picture_.materials),
+          shading_(picture_, placed_, tree_, lights_, rough_),
           transport_(picture_, placed_, tree_, lights_, shading_),
           scene_(placed_, tree_, settings_) {
         for (int i = 0; i < kRays; ++i)
@@ -118,6 +119,7 @@ class Rays {
     render::PlacedBodies placed_;
     render::BodyTree tree_;
     render::LightSet lights_;
+    render::RoughReflections rough_;
     render::Shading shading_;
     render::LightTransport transport_;
     render::RayScene scene_;

@@ -63,22 +63,24 @@ int most_instants(std::size_t bodies, int samples) {
 }
 
 Instant::Instant(const Picture& picture, const CameraDescription& d, const SliceSheet& sheet,
-                 const Bodies& bodies)
+                 const Bodies& bodies, const RoughReflections& rough)
     : description(d),
       camera(description, sheet.cell_width(), sheet.cell_height()),
       placed(place_bodies(picture, bodies, camera.origin())),
       lights(picture.lights, camera.origin()),
       tree(tree_of(picture, placed, lights)),
-      shading(picture, placed, tree, lights),
+      shading(picture, placed, tree, lights, rough),
       transport(picture, placed, tree, lights, shading),
       rays(description, camera) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)
     : picture_(picture),
       sheet_(picture.camera, picture.settings.width, picture.settings.height),
+      rough_(picture.materials),
       filter_(picture.settings.filter, picture.settings.filter_width),
       wants_color_(wants_color) {
-    instants_.push_back(std::make_unique<Instant>(picture, picture.camera, sheet_, picture.bodies));
+    instants_.push_back(
+        std::make_unique<Instant>(picture, picture.camera, sheet_, picture.bodies, rough_));
     const int count = instant_count(picture, opening().camera);
     if (count > 1) {
         Bodies bodies = picture.bodies;
@@ -86,7 +88,8 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
             const double part = (k + 0.5) / count;
             interpolate_poses(picture.bodies, *picture.closing, part, bodies);
             instants_.push_back(std::make_unique<Instant>(
-                picture, between(picture.camera, *picture.closing_camera, part), sheet_, bodies));
+                picture, between(picture.camera, *picture.closing_camera, part), sheet_, bodies,
+                rough_));
         }
     }
     const double far = picture.settings.max_distance;

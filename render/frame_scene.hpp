@@ -24,7 +24,7 @@ struct Instant {
 
     /// @param bodies   their poses at the instant; only read here
     Instant(const Picture& picture, const CameraDescription& description, const SliceSheet& sheet,
-            const Bodies& bodies);
+            const Bodies& bodies, const RoughReflections& rough);
     Instant(const Instant&) = delete;  // its parts refer to each other
 };
 
@@ -59,6 +59,7 @@ class FrameScene {
   private:
     const Picture& picture_;
     SliceSheet sheet_;
+    RoughReflections rough_;
     PixelFilter filter_;
     bool wants_color_;
     std::vector<std::unique_ptr<Instant>> instants_;  ///< the opening one, then those of samples

@@ -28,8 +28,8 @@ Color albedo_at(const Material& m, const Vec4& point) {
 }
 
 Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
-                 const LightSet& lights)
-    : picture_(picture), placed_(placed), lights_(lights) {
+                 const LightSet& lights, const RoughReflections& rough)
+    : picture_(picture), placed_(placed), lights_(lights), rough_(rough) {
     if (!lights.is_empty()) shadows_.emplace(placed, tree);
 }
 
@@ -40,8 +40,8 @@ Surface Shading::surface(const Hit& hit, const Vec4& origin, const Vec4& directi
     const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
     const std::uint32_t type = picture_.bodies.type[body.id];
     const Material& material = picture_.materials[picture_.appearance[type].material];
-    Surface s = {hit.distance, hit.body, point, placed_.direction_to_world(body, out),
-                 {},           &material};
+    Surface s = {hit.distance, hit.body,           point, placed_.direction_to_world(body, out), {},
+                 &material,    rough_.of(material)};
     s.albedo = material.pattern == Pattern::kNone
                    ? material.albedo
                    : albedo_at(material, local - pattern_origin(*body.shape) -

@@ -6,6 +6,7 @@
 #include "render/intersect.hpp"
 #include "render/light/light_set.hpp"
 #include "render/material/bsdf.hpp"
+#include "render/material/rough.hpp"
 #include "render/shadow.hpp"
 #include "render/surface.hpp"
 
@@ -22,9 +23,9 @@ Color albedo_at(const Material& material, const Vec4& point);
 class Shading {
   public:
     /// @param tree     of the bodies; without lights that cast shadows nothing asks it
-    /// @param lights   must outlive it, like the others
+    /// @param rough    of its materials; must outlive it, like the others
     Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
-            const LightSet& lights);
+            const LightSet& lights, const RoughReflections& rough);
 
     /// Where a ray meets a body.
     /// @param origin      of the ray, relative to the camera
@@ -47,6 +48,7 @@ class Shading {
     const Picture& picture_;
     const PlacedBodies& placed_;
     const LightSet& lights_;
+    const RoughReflections& rough_;
     std::optional<Shadows> shadows_;  ///< none without lights that cast shadows
 };
 

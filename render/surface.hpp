@@ -7,6 +7,8 @@
 
 namespace tesserae::render {
 
+class RoughReflection;
+
 /// What a ray found on a body.
 struct Surface {
     double distance;     ///< along the ray [m]
@@ -15,6 +17,7 @@ struct Surface {
     Vec4 normal;         ///< unit, out of the body, world axes
     Color albedo;
     const Material* material;
+    const RoughReflection* rough = nullptr;  ///< of a rough material
 };
 
 }  // namespace tesserae::render

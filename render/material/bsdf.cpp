@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "render/material/microfacet.hpp"
+#include "render/material/rough.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -18,20 +18,19 @@ bool is_specular(const Material& m) {
 }
 
 Bsdf::Bsdf(const Surface& surface, const Vec4& out) : surface_(surface), out_(out) {
-    if (surface.material->kind != MaterialKind::kRough) return;
+    if (surface.rough == nullptr) return;
     frame_.emplace(surface.normal);
     out_ = frame_->to_local(out);
 }
 
 Color Bsdf::value(const Vec4& in) const {
     if (!frame_) return kLambert * surface_.albedo;
-    const Microfacet facets(surface_.material->roughness);
-    return facets.brdf(out_, frame_->to_local(in)) * surface_.albedo;
+    return surface_.rough->brdf(surface_.albedo, out_, frame_->to_local(in));
 }
 
 double Bsdf::density(const Vec4& in) const {
     if (!frame_) return kLambert * std::max(0.0, surface_.normal.dot(in));
-    return Microfacet(surface_.material->roughness).density(out_, frame_->to_local(in));
+    return surface_.rough->density(out_, frame_->to_local(in));
 }
 
 Bsdf::Sample Bsdf::sample(const Uniform3& u) const {
@@ -39,13 +38,12 @@ Bsdf::Sample Bsdf::sample(const Uniform3& u) const {
         const Vec4 in = cosine_direction(u);
         return {TangentFrame(surface_.normal).to_world(in), surface_.albedo, kLambert * in[3]};
     }
-    const Microfacet facets(surface_.material->roughness);
-    const Vec4 in = out_[3] > 0 ? facets.sample(out_, u) : Vec4(-Vec4::UnitW());
+    const Vec4 in = out_[3] > 0 ? surface_.rough->sample(out_, u) : Vec4(-Vec4::UnitW());
     Sample sample = {frame_->to_world(in), Color::Zero(), 0};
     if (!(in[3] > 0)) return sample;
-    sample.density = facets.density(out_, in);
+    sample.density = surface_.rough->density(out_, in);
     if (sample.density > 0)
-        sample.weight = surface_.albedo * (facets.brdf(out_, in) * in[3] / sample.density);
+        sample.weight = surface_.rough->brdf(surface_.albedo, out_, in) * (in[3] / sample.density);
     return sample;
 }
 

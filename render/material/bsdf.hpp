@@ -11,7 +11,7 @@ namespace tesserae::render {
 bool is_specular(const Material& material);
 
 /// How a surface that is not specular scatters light toward a viewer: diffuse, by Lambert's 3
-/// albedo/(4 pi); rough, by albedo times the microfacets' BRDF.
+/// albedo/(4 pi); rough, by RoughReflection.
 class Bsdf {
   public:
     /// @param out   toward the viewer, unit, world axes

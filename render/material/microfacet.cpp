@@ -21,14 +21,17 @@ double Microfacet::lambda(const Vec4& d) const {
 
 double Microfacet::visible_part(const Vec4& d) const { return 1 / (1 + lambda(d)); }
 
+double Microfacet::visible_part(const Vec4& out, const Vec4& in) const {
+    return 1 / (1 + lambda(out) + lambda(in));
+}
+
 double Microfacet::brdf(const Vec4& out, const Vec4& in) const {
     if (!(out[3] > 0 && in[3] > 0)) return 0;
     const Vec4 m = (out + in).normalized();
-    const double g = 1 / (1 + lambda(out) + lambda(in));
-    return normal_density(m) * g / (8 * out.dot(m) * out[3] * in[3]);
+    return normal_density(m) * visible_part(out, in) / (8 * out.dot(m) * out[3] * in[3]);
 }
 
-Vec4 Microfacet::sample(const Vec4& out, const Uniform3& u) const {
+Vec4 Microfacet::visible_normal(const Vec4& out, Eigen::Vector3d p) const {
     // Stretch the ellipsoid to the unit hemisphere.
     const Vec4 view = Vec4(alpha_ * out[0], alpha_ * out[1], alpha_ * out[2], out[3]).normalized();
 
@@ -41,7 +44,6 @@ Vec4 Microfacet::sample(const Vec4& out, const Uniform3& u) const {
                                    : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 
     // The ball's lower half is seen foreshortened.
-    Eigen::Vector3d p = uniform_ball(u);
     const double height = p.dot(up);
     const double rim = std::sqrt(std::max(0.0, 1 - (p - height * up).squaredNorm()));
     const double part = 0.5 * (1 + view[3]);
@@ -52,7 +54,11 @@ Vec4 Microfacet::sample(const Vec4& out, const Uniform3& u) const {
     Vec4 m = frame.to_world({p.x(), p.y(), p.z(), depth});
     m.head<3>() *= alpha_;
     m[3] = std::max(m[3], 0.0);
-    m.normalize();
+    return m.normalized();
+}
+
+Vec4 Microfacet::sample(const Vec4& out, const Uniform3& u) const {
+    const Vec4 m = visible_normal(out, uniform_ball(u));
     return (2 * out.dot(m) * m - out).normalized();
 }
 

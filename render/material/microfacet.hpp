@@ -30,14 +30,18 @@ class Microfacet {
     static constexpr double kLeastAlpha = 1e-4;
 
     double normal_density(const Vec4& normal) const;
-    /// G1.
+    /// G1, and the same for both ways of a reflection.
     double visible_part(const Vec4& direction) const;
+    double visible_part(const Vec4& out, const Vec4& in) const;
     /// Of a perfect mirror's material; 0 where either direction is below the surface.
     double brdf(const Vec4& out, const Vec4& in) const;
 
-    /// The mirrored direction of `out` at a mirror picked from those that `out` sees, in proportion
-    /// to the area seen: a uniform point of the stretched hemisphere's shadow, which is half a ball
-    /// and half an ellipsoid (Heitz 2018). May lie below the surface.
+    /// The mirror that `out` sees for a point of the unit 3-ball, in proportion to the area seen: a
+    /// point of the stretched hemisphere's shadow, which is half a ball and half an ellipsoid
+    /// (Heitz 2018). Where `out` is across the second and third axis, so is the mirror for a point
+    /// without them.
+    Vec4 visible_normal(const Vec4& out, Eigen::Vector3d point) const;
+    /// The mirrored direction of `out` at a random one of these. May lie below the surface.
     Vec4 sample(const Vec4& out, const Uniform3& u) const;
     /// Density of `sample`: G1(out) D(m) / (8 (out.m) cos_out).
     double density(const Vec4& out, const Vec4& in) const;

@@ -29,6 +29,8 @@ Facts scene_facts(const std::filesystem::path& file, int threads) {
             {"movable bodies", fmt::format("{}", plan.movable_bodies)},
             {"materials", fmt::format("{}", scene.materials.size())},
             {"suns", fmt::format("{}", scene.lights.suns.size())},
+            {"point lights", fmt::format("{}", scene.lights.points.size())},
+            {"sphere lights", fmt::format("{}", scene.lights.spheres.size())},
             {"steps", fmt::format("{}", plan.steps)},
             {"frames", fmt::format("{}", plan.frames)},
             {"size", fmt::format("{}x{}", scene.render.width, scene.render.height)},

@@ -49,21 +49,23 @@ TEST(Path, LoneConvexBodyInAWhiteFurnaceShowsItsAlbedo) {
 TestScene white_heap(Random& random, int bodies) {
     TestScene scene = path_scene(100'000);
     scene.lights.sky = Color::Ones();
-    scene.materials.resize(4);
+    scene.materials.resize(5);
     for (Material& m : scene.materials) m.albedo = Color::Ones();
     scene.materials[1].kind = MaterialKind::kMirror;
     scene.materials[2].kind = scene.materials[3].kind = MaterialKind::kGlass;
     scene.materials[3].ior = 1.2;
+    scene.materials[4].kind = MaterialKind::kRough;
+    scene.materials[4].roughness = 0.8;
     for (int i = 0; i < bodies; ++i)
         scene.add(random_shape(random, static_cast<int>(random() % 3), 0.8),
                   4 * Vec4::UnitZ() + random_vector(random, 0.8), random_rotor(random),
-                  static_cast<std::uint32_t>(random() % 4));
+                  static_cast<std::uint32_t>(random() % 5));
     return scene;
 }
 
 TEST(Path, HeapsOfWhiteBodiesInAWhiteFurnaceCannotBeSeen) {
     // Nothing absorbs, so each ray brings back 1: mirrors, glass in glass, glass that stands in
-    // diffuse bodies. Only roulette makes noise.
+    // diffuse bodies, rough ones. Only roulette and rough surfaces make noise.
     Random random(522);
     for (int i = 0; i < 40; ++i) {
         const TracedScene traced(white_heap(random, 1 + i % 6));
@@ -198,25 +200,28 @@ TEST(Path, RoughBodyInAWhiteFurnaceShowsItsDirectionalAlbedo) {
         TestScene scene = path_scene(3);
         scene.materials[0].kind = MaterialKind::kRough;
         scene.materials[0].roughness = roughness;
-        scene.materials[0].albedo = Color::Constant(0.5);
+        scene.materials[0].albedo = {1, 0.5, 0};
         scene.lights.sky = Color::Ones();
         scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
         const Vec4 direction = Vec4(0.5, -1, 0.3, 0.2).normalized();
         // The albedo from uniform directions of the hemisphere, area pi^2.
-        const Microfacet facets(roughness);
+        const RoughReflection rough(roughness);
         const TangentFrame frame(Vec4::UnitY());
         Mean albedo;
         for (int i = 0; i < 400'000; ++i) {
             Vec4 in = random_direction(random);
             in[3] = std::abs(in[3]);
-            albedo.add(Color::Constant(0.5 * kPi * kPi * in[3] *
-                                       facets.brdf(frame.to_local(-direction), in)));
+            albedo.add(rough.brdf(scene.materials[0].albedo, frame.to_local(-direction), in) *
+                       (kPi * kPi * in[3]));
         }
         const Mean found = mean_radiance(TracedScene(scene), direction, 20000);
-        EXPECT_NEAR(found.mean()[0], albedo.mean()[0],
-                    5 * std::hypot(found.sigma()[0], albedo.sigma()[0]))
+        EXPECT_NEAR(found.mean()[0], 1, 5 * found.sigma()[0] + 1e-3) << roughness;
+        EXPECT_LT(found.sigma()[0], 0.01);
+        EXPECT_NEAR(found.mean()[1], albedo.mean()[1],
+                    5 * std::hypot(found.sigma()[1], albedo.sigma()[1]))
             << roughness;
-        EXPECT_LT(albedo.sigma()[0], 0.01);
+        EXPECT_LT(albedo.sigma()[1], 0.01);
+        EXPECT_EQ(found.mean()[2], 0);
     }
 }
 
@@ -301,8 +306,7 @@ Color reference(const TracedScene& t, const Vec4& origin, const Vec4& direction,
     Color brdf = s.albedo * (3 / (4 * kPi));
     if (s.material->kind == MaterialKind::kRough) {
         const TangentFrame frame(s.normal);
-        brdf = s.albedo * Microfacet(s.material->roughness)
-                              .brdf(frame.to_local(-direction), frame.to_local(next));
+        brdf = s.rough->brdf(s.albedo, frame.to_local(-direction), frame.to_local(next));
     }
     return s.material->emission + brdf * next.dot(s.normal) * kPi * kPi *
                                       reference(t, s.point, next, s.body, scattered + 1, random);

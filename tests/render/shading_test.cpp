@@ -23,7 +23,8 @@ Shaded shade(const TestScene& scene, const Vec4& direction) {
     const Picture picture = scene.picture();
     const LightSet lights(picture.lights, Vec4::Zero());
     const BodyTree tree(placed);
-    const Shading shading(picture, placed, tree, lights);
+    const RoughReflections rough(picture.materials);
+    const Shading shading(picture, placed, tree, lights, rough);
     Shaded s;
     Hit hit;
     for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {

@@ -15,6 +15,7 @@ struct TracedScene {
     PlacedBodies placed;
     BodyTree tree;
     LightSet lights;
+    RoughReflections rough;
     Shading shading;
     LightTransport transport;
     mutable FrameStats stats;
@@ -25,7 +26,8 @@ struct TracedScene {
           placed(place_bodies(picture, Vec4::Zero())),
           tree(placed),
           lights(scene.lights, Vec4::Zero()),
-          shading(picture, placed, tree, lights),
+          rough(picture.materials),
+          shading(picture, placed, tree, lights, rough),
           transport(picture, placed, tree, lights, shading) {}
     TracedScene(const TracedScene&) = delete;
 

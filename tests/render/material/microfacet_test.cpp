@@ -3,40 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "tests/render/sphere_quadrature.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kRoughnesses[] = {0.4, 0.6, 1.0};
-
-/// The direction at a polar angle, its tangent part at an angle from the x axis.
-Vec4 direction_at(double polar, double turn) {
-    const double across = std::sin(polar);
-    return {across * std::cos(turn), across * std::sin(turn), 0, std::cos(polar)};
-}
-
-/// Integral over the directions with polar angle in [a, b] and turn in [p, q] of a function that is
-/// symmetric around the plane of x and the normal: midpoints, solid angle
-/// 4 pi sin^2(polar) dpolar sin(turn) dturn/2.
-template <class F>
-double integral(const F& f, double a, double b, double p, double q, int steps) {
-    double sum = 0;
-    for (int i = 0; i < steps; ++i) {
-        const double polar = a + (b - a) * (i + 0.5) / steps;
-        double ring = 0;
-        for (int j = 0; j < steps; ++j) {
-            const double turn = p + (q - p) * (j + 0.5) / steps;
-            ring += std::sin(turn) * f(direction_at(polar, turn));
-        }
-        sum += ring * std::sin(polar) * std::sin(polar);
-    }
-    return sum * 2 * kPi * (b - a) * (q - p) / (steps * steps);
-}
 
 TEST(Microfacet, ProjectedAreaOfTheMirrorsIsOne) {
     for (double roughness : {0.01, 0.05, 0.3, 0.7, 1.0}) {
@@ -83,17 +58,15 @@ TEST(Microfacet, IsReciprocal) {
     EXPECT_EQ(Microfacet(0.5).brdf(Vec4::UnitW(), Vec4(1, 0, 0, 0)), 0);
 }
 
-/// The directional albedo: what a white rough surface sends back of a uniform field.
-double albedo_by_quadrature(const Microfacet& facets, const Vec4& out) {
-    return integral([&](const Vec4& in) { return facets.brdf(out, in) * in[3]; }, 0, kPi / 2, 0,
-                    kPi, 900);
+double albedo_of(const Microfacet& facets, const Vec4& out) {
+    return albedo_by_quadrature([&](const Vec4& in) { return facets.brdf(out, in); });
 }
 
 TEST(Microfacet, SendsBackNoMoreThanItGets) {
     for (double roughness : kRoughnesses)
         for (double polar : {0.05, 0.7, 1.2, 1.5}) {
             const Microfacet facets(roughness);
-            const double albedo = albedo_by_quadrature(facets, direction_at(polar, 0));
+            const double albedo = albedo_of(facets, direction_at(polar, 0));
             EXPECT_LT(albedo, 1) << roughness << " " << polar;
             EXPECT_GT(albedo, 0) << roughness << " " << polar;
         }
@@ -101,10 +74,10 @@ TEST(Microfacet, SendsBackNoMoreThanItGets) {
     // 3 * integral of (1 - 2 s^2) s^2/(1 - s^2) ds up to s = sqrt(1/2). In four dimensions most
     // mirrors of so rough a surface send light below it.
     const double s = std::sqrt(0.5);
-    EXPECT_NEAR(albedo_by_quadrature(Microfacet(1), Vec4::UnitW()),
+    EXPECT_NEAR(albedo_of(Microfacet(1), Vec4::UnitW()),
                 3 * (2 * s * s * s / 3 + s - std::atanh(s)), 1e-5);
     // A narrow lobe loses next to nothing.
-    EXPECT_NEAR(albedo_by_quadrature(Microfacet(0.25), direction_at(0.5, 0)), 1, 0.01);
+    EXPECT_NEAR(albedo_of(Microfacet(0.25), direction_at(0.5, 0)), 1, 0.01);
 }
 
 TEST(Microfacet, DensityIntegratesToOne) {
@@ -177,7 +150,7 @@ TEST(Microfacet, SamplesFollowTheirDensity) {
             // Their mean weight is the directional albedo.
             const double mean = back / kCount;
             const double sigma = std::sqrt((back_square / kCount - mean * mean) / kCount);
-            EXPECT_NEAR(mean, albedo_by_quadrature(facets, out), 5 * sigma + 1e-4);
+            EXPECT_NEAR(mean, albedo_of(facets, out), 5 * sigma + 1e-4);
         }
 }
 

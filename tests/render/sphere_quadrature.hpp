@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "core/algebra/vector.hpp"
+
+// Integrals over the directions of 4D, S^3.
+namespace tesserae::render {
+
+constexpr double kPi = std::numbers::pi;
+
+/// The direction at a polar angle, its tangent part at an angle from the x axis.
+inline Vec4 direction_at(double polar, double turn) {
+    const double across = std::sin(polar);
+    return {across * std::cos(turn), across * std::sin(turn), 0, std::cos(polar)};
+}
+
+/// Integral over the directions with polar angle in [a, b] and turn in [p, q] of a function that is
+/// symmetric around the plane of x and the normal: midpoints, solid angle
+/// 4 pi sin^2(polar) dpolar sin(turn) dturn/2.
+template <class F>
+double integral(const F& f, double a, double b, double p, double q, int steps) {
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double polar = a + (b - a) * (i + 0.5) / steps;
+        double ring = 0;
+        for (int j = 0; j < steps; ++j) {
+            const double turn = p + (q - p) * (j + 0.5) / steps;
+            ring += std::sin(turn) * f(direction_at(polar, turn));
+        }
+        sum += ring * std::sin(polar) * std::sin(polar);
+    }
+    return sum * 2 * kPi * (b - a) * (q - p) / (steps * steps);
+}
+
+/// The directional albedo: what a surface sends back of a uniform field of radiance 1.
+template <class Brdf>
+double albedo_by_quadrature(const Brdf& brdf, int steps = 900) {
+    return integral([&](const Vec4& in) { return brdf(in) * in[3]; }, 0, kPi / 2, 0, kPi, steps);
+}
+
+}  // namespace tesserae::render
