@@ -1,6 +1,8 @@
 #pragma once
 
-#include "render/frame.hpp"
+#include <filesystem>
+
+#include "render/picture.hpp"
 
 namespace tesserae::render {
 

@@ -1,65 +1,11 @@
 #pragma once
 
 #include <atomic>
-#include <compare>
 #include <filesystem>
-#include <span>
-#include <string>
 
-#include "core/dynamics/bodies.hpp"
-#include "render/description.hpp"
+#include "render/picture.hpp"
 
 namespace tesserae::render {
-
-/// Everything that decides a frame's pixels. Refers to its parts; they must outlive it.
-struct Picture {
-    const Bodies& bodies;                    ///< poses at the frame's time, when the shutter opens
-    std::span<const Appearance> appearance;  ///< by body type
-    std::span<const Material> materials;
-    const CameraDescription& camera;
-    const Lights& lights;
-    const Settings& settings;
-    /// When the shutter closes: poses, camera. Both, or none for one that is open for no time.
-    const Bodies* closing = nullptr;
-    const CameraDescription* closing_camera = nullptr;
-};
-
-/// What goes into the header beside the pixels.
-struct FrameInfo {
-    std::string scene_name, scene_hash, program_version;
-    int frame = 0;
-    double time = 0;       ///< [s]
-    std::string id_names;  ///< JSON: names of the object ids
-};
-
-/// A sample of a pixel; by rows, then columns.
-struct SampleNumber {
-    int y = 0, x = 0;  ///< pixel from the full frame's top left
-    std::uint32_t sample = 0;
-
-    friend auto operator<=>(const SampleNumber&, const SampleNumber&) = default;
-};
-
-struct FrameStats {
-    std::uint64_t view_rays = 0, shadow_rays = 0, bounce_rays = 0, distance_evaluations = 0;
-    /// Sphere traces that used up their steps; they count as hits, so that no ray leaks through.
-    std::uint64_t unresolved = 0;
-    /// Samples whose colour was infinite or no number: left out of their pixels, as black.
-    std::uint64_t invalid_samples = 0;
-    SampleNumber first_invalid;  ///< the lowest of them, if there is any
-
-    FrameStats& operator+=(const FrameStats& o) {
-        view_rays += o.view_rays, shadow_rays += o.shadow_rays;
-        bounce_rays += o.bounce_rays;
-        distance_evaluations += o.distance_evaluations, unresolved += o.unresolved;
-        if (o.invalid_samples > 0) count_invalid(o.first_invalid, o.invalid_samples);
-        return *this;
-    }
-    void count_invalid(const SampleNumber& sample, std::uint64_t count) {
-        if (invalid_samples == 0 || sample < first_invalid) first_invalid = sample;
-        invalid_samples += count;
-    }
-};
 
 /// Renders one frame into the EXR file `exr` and, unless empty, the PNG file `preview`. Runs on the
 /// threads of the caller's task arena; the bytes do not depend on their number.

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "render/frame.hpp"
+#include "render/picture.hpp"
 #include "render/placed_bodies.hpp"
 
 namespace tesserae::render {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/dynamics/bodies.hpp"
-#include "render/frame.hpp"
+#include "render/picture.hpp"
 
 namespace tesserae::render {
 

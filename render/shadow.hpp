@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "render/body_tree.hpp"
-#include "render/frame.hpp"
+#include "render/picture.hpp"
 
 namespace tesserae::render {
 

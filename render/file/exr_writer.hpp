@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/camera.hpp"
-#include "render/frame.hpp"
+#include "render/picture.hpp"
 #include "render/tile_image.hpp"
 
 namespace tesserae::render {

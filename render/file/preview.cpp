@@ -1,6 +1,7 @@
 #include "render/file/preview.hpp"
 
 #include <png.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -96,18 +97,18 @@ void Preview::add(const TileImage& tile) {
 }
 
 std::vector<std::uint8_t> Preview::codes() const {
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(3 * sums_.size());
+    std::vector<std::uint8_t> rgb(3 * sums_.size());
     const int w = window_.x1 - window_.x0, h = window_.y1 - window_.y0;
-    for (int y = 0; y < height_; ++y)
+    tbb::parallel_for(0, height_, [&](int y) {
         for (int x = 0; x < width_; ++x) {
             const int columns = std::min(factor_, w - x * factor_);
             const int rows = std::min(factor_, h - y * factor_);
-            for (std::uint32_t sum :
-                 sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                       static_cast<std::size_t>(x)])
-                rgb.push_back(srgb_code(sum / (kOne * columns * rows)));
+            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                   static_cast<std::size_t>(x);
+            for (std::size_t i = 0; i < 3; ++i)
+                rgb[3 * at + i] = srgb_code(sums_[at][i] / (kOne * columns * rows));
         }
+    });
     return rgb;
 }
 

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "render/frame.hpp"
+
 namespace tesserae::render {
 
 BodyId TestScene::add(const Shape& shape, const Vec4& position, const Rotor& rotor,

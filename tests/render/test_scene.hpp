@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "render/frame.hpp"
+#include "render/picture.hpp"
 
 namespace tesserae::render {
 
