@@ -45,18 +45,27 @@ def medians(runs):
             for key, quantities in runs.items()}
 
 
-def ratios(of, scene, bodies):
-    """{stage: (1 thread over 2, serial share)}. By Amdahl's law 2 threads take s + (1 - s)/2 of the
+def ratios(of, scene, bodies, threads):
+    """{stage: (1 thread over n, serial share)}. By Amdahl's law n threads take s + (1 - s)/n of the
     time, s the share that does not gain: what is serial, what waits, and what the memory limits."""
     table = {}
-    if (scene, bodies, 1) not in of or (scene, bodies, 2) not in of:
+    if threads == 1 or (scene, bodies, 1) not in of or (scene, bodies, threads) not in of:
         return table
-    one, two = of[scene, bodies, 1], of[scene, bodies, 2]
+    one, many = of[scene, bodies, 1], of[scene, bodies, threads]
     for stage in TIMES:
         key = f"{stage}_ms"
-        if one.get(key) and two.get(key):
-            table[stage] = one[key] / two[key], 2 * two[key] / one[key] - 1
+        if one.get(key) and many.get(key):
+            gain = one[key] / many[key]
+            table[stage] = gain, (threads / gain - 1) / (threads - 1)
     return table
+
+
+def weak_efficiency(of, scene, bodies, threads):
+    """Time of 1 thread with its share of the bodies over that of all threads with all; or None."""
+    share = of.get((scene, bodies // threads, 1))
+    if threads == 1 or not share:
+        return None
+    return share["step_ms"] / of[scene, bodies, threads]["step_ms"]
 
 
 def write_table(path, head, runs, of):
@@ -65,10 +74,12 @@ def write_table(path, head, runs, of):
         for name, values in quantities.items():
             rows.append([scene, bodies, threads, name, f"{np.median(values):.4g}",
                          f"{spread_percent(values):.1f}"])
-        if threads == 2:
-            for stage, (speedup, serial) in ratios(of, scene, bodies).items():
-                rows.append([scene, bodies, 2, f"{stage}_speedup", f"{speedup:.3f}", ""])
-                rows.append([scene, bodies, 2, f"{stage}_serial_share", f"{serial:.3f}", ""])
+        for stage, (speedup, serial) in ratios(of, scene, bodies, threads).items():
+            rows.append([scene, bodies, threads, f"{stage}_speedup", f"{speedup:.3f}", ""])
+            rows.append([scene, bodies, threads, f"{stage}_serial_share", f"{serial:.3f}", ""])
+        weak = weak_efficiency(of, scene, bodies, threads)
+        if weak:
+            rows.append([scene, bodies, threads, "weak_efficiency", f"{weak:.3f}", ""])
     write_csv(path, head, ["scene", "bodies", "threads", "quantity", "median", "spread_percent"],
               rows)
 
@@ -87,18 +98,22 @@ def sizes_of(of, scene, threads=1):
     return sorted(bodies for name, bodies, count in of if (name, count) == (scene, threads))
 
 
+def most_threads(of):
+    return max(threads for _, _, threads in of)
+
+
 def plot_times(path, of, scenes):
-    """One thread drawn through, two dashed."""
+    """One thread drawn through, all dashed."""
     figure, axes = panels(scenes)
     for axis, scene in zip(axes, scenes):
         axis.set_yscale("log")
         for stage in TIMES:
-            for threads, line in ((1, "-"), (2, "--")):
+            for threads, line in ((1, "-"), (most_threads(of), "--")):
                 sizes = sizes_of(of, scene, threads)
                 times = [1e3 * of[scene, n, threads].get(f"{stage}_ms", np.nan) / n for n in sizes]
                 axis.plot(sizes, times, line, color=COLORS.get(stage, "black"), marker=".",
                           label=stage if threads == 1 else None)
-    axes[0].set_ylabel("µs a body and step (dashed: 2 threads)")
+    axes[0].set_ylabel(f"µs a body and step (dashed: {most_threads(of)} threads)")
     axes[-1].legend(fontsize=7, bbox_to_anchor=(1.02, 1), loc="upper left")
     save(figure, path)
 
@@ -122,14 +137,15 @@ def plot_shares(path, of, scenes):
 
 def plot_threads(path, of, scenes):
     """The step's gain, and the serial share that would explain it."""
+    most = most_threads(of)
     figure, (gain, serial) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
     for scene in scenes:
-        sizes = [n for n in sizes_of(of, scene) if "step" in ratios(of, scene, n)]
-        of_step = np.array([ratios(of, scene, n)["step"] for n in sizes]).reshape(-1, 2)
+        sizes = [n for n in sizes_of(of, scene) if "step" in ratios(of, scene, n, most)]
+        of_step = np.array([ratios(of, scene, n, most)["step"] for n in sizes]).reshape(-1, 2)
         gain.plot(sizes, of_step[:, 0], ".-", label=scene)
         serial.plot(sizes, 100 * of_step[:, 1], ".-", label=scene)
-    gain.axhline(2, color="gray", lw=0.5)
-    gain.set_ylabel("step: time of 1 thread over that of 2")
+    gain.axhline(most, color="gray", lw=0.5)
+    gain.set_ylabel(f"step: time of 1 thread over that of {most}")
     serial.set_ylabel("serial share by Amdahl's law [%]")
     for axis in gain, serial:
         axis.set_xscale("log")

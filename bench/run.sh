@@ -9,7 +9,7 @@
 #   bash bench/run.sh light        error of the traced light against samples, a minute
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
-#   bash bench/run.sh scaling      the stages of a step against bodies and threads, an hour
+#   bash bench/run.sh scaling      the stages of a step against bodies and threads, ten minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
@@ -90,29 +90,23 @@ bullet() {
 }
 
 peers() {
-    local scene count
+    local scene
     for scene in sphere_pile box_wall; do
-        for count in 1000 10000; do
-            "$folder/bench/peers_double" $scene $count all
-            "$folder/bench/peers_float" $scene $count
-        done
+        "$folder/bench/peers_double" $scene 1000 all
+        "$folder/bench/peers_float" $scene 1000
+        "$folder/bench/peers_double" $scene 10000
     done | awk 'NR == 1 || !/^scene,/' >"$raw/peers.csv"
     head_of peers "$1"
     cat "$raw/head.txt" "$raw/peers.csv" >"$results/peers.csv"
 }
 
-# scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: every configuration three times, one after the
-# other, so that what else happens on the machine falls on all.
+# scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: 1, 2, 4, ... threads in turn, five times each.
 scale() {
-    local part=$1 load_before=$2 repeat threads scene count settle steps
+    local part=$1 load_before=$2 scene count settle steps
     shift 2
-    for repeat in 1 2 3; do
-        for configuration in "$@"; do
-            IFS=, read -r scene count settle steps <<<"$configuration"
-            for threads in 1 2; do
-                "$folder/bench/scaling" "$scene" "$count" "$threads" "$settle" "$steps"
-            done
-        done
+    for configuration in "$@"; do
+        IFS=, read -r scene count settle steps <<<"$configuration"
+        "$folder/bench/scaling" "$scene" "$count" "$(nproc)" "$settle" "$steps" 5
     done | awk 'NR == 1 || !/^scene,/' >"$raw/$part.csv"
     head_of "$part" "$load_before"
     /usr/bin/python3 -B "$root/bench/report_scaling.py" "$raw/head.txt" "$raw/$part.csv" "$results/$part"
@@ -121,7 +115,7 @@ scale() {
 scaling() {
     local scene configurations=()
     for scene in gas pile boxes stacks pyramid; do
-        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,20" "$scene,100000,120,5")
+        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,20" "$scene,50000,120,3" "$scene,100000,120,3")
     done
     scale scaling "$1" "${configurations[@]}"
 }
