@@ -8,7 +8,7 @@
 #   bash bench/run.sh extremes     stiff and extreme scenes
 #   bash bench/run.sh light        error of the traced light against samples, a minute
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
-#   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, half an hour
+#   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, a quarter of an hour
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, ten minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
