@@ -110,7 +110,8 @@ struct Settings {
     double frames_per_second = 30;
     int samples = 16;
     Integrator integrator = Integrator::kDirect;
-    int bounces = 4;  ///< 0: emitted and direct light only
+    int bounces = 4;            ///< 0: emitted and direct light only
+    double clamp_indirect = 0;  ///< see LightTransport::radiance; 0 is none [radiance]
     Intersector intersector = Intersector::kTrace;
     int max_steps = 200;
     double max_distance = 200;  ///< along a view ray [m]

@@ -24,6 +24,12 @@ bool is_in_disc(const LightDisc& disc, const Vec4& direction) {
     return (direction - disc.toward).norm() <= 2 * std::sin(0.5 * disc.angle);
 }
 
+/// No brighter than `most`; of the same hue. 0: as it is.
+Color clamped(const Color& light, double most) {
+    const double brightest = light.maxCoeff();
+    return most > 0 && brightest > most ? Color(light * (most / brightest)) : light;
+}
+
 }  // namespace
 
 bool LightTransport::needs_rays(const Picture& picture) {
@@ -59,32 +65,45 @@ Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& 
     arrival.light = lights_.first_sphere(ray.origin, direction, limit).sphere;
 
     Color sum = Color::Zero(), throughput = Color::Ones();
+    // Scatterings since the first surface that is not specular, with that one's. What such a
+    // surface gets from a light or from what glows is direct; light of longer ways is not.
+    int since_diffuse = 0;
+    const auto add = [&](const Color& light, bool is_indirect) {
+        sum += is_indirect ? clamped(throughput * light, picture_.settings.clamp_indirect)
+                           : Color(throughput * light);
+    };
     for (int scattered = 0;; ++scattered) {
-        if (!arrival.surface || arrival.light != LightSet::kNone)
-            return sum + throughput * light_seen(ray, arrival);
+        if (!arrival.surface || arrival.light != LightSet::kNone) {
+            add(light_seen(ray, arrival), since_diffuse > 1);
+            return sum;
+        }
         const Surface& surface = *arrival.surface;
         const Vec4 out = -ray.direction;
         const bool goes_on = is_specular(*surface.material) || !is_direct;
         if (!goes_on && scattered <= picture_.settings.bounces)
             return sum + throughput * shading_.radiance(surface, out, stats);
-        sum += throughput * surface.material->emission;
+        add(surface.material->emission, since_diffuse > 1);
         if (scattered > picture_.settings.bounces) return sum;
 
         const std::uint32_t group = groups * static_cast<std::uint32_t>(scattered);
         const auto u = sampler.group(group);
         if (is_specular(*surface.material)) {
             throughput *= scatter_specular(ray, arrival, u[0]);
+            if (since_diffuse > 0) ++since_diffuse;
         } else {
             const Bsdf bsdf(surface, out);
             // Glass lets no straight ray to a light pass.
             const bool is_free = ray.medium == GlassBodies::kNone;
-            if (is_free)
-                sum += throughput *
-                       (light_of_points(surface, bsdf, stats) +
-                        light_of_spheres_and_suns(surface, bsdf, sampler, group + 1, stats));
+            if (is_free) {
+                const Color light =
+                    light_of_points(surface, bsdf, stats) +
+                    light_of_spheres_and_suns(surface, bsdf, sampler, group + 1, stats);
+                add(light, since_diffuse > 0);
+            }
             const Bsdf::Sample next = bsdf.sample({u[0], u[1], u[2]});
             throughput *= next.weight;
             ray = {surface.point, next.in, surface.body, ray.medium, is_free ? next.density : 0};
+            ++since_diffuse;
         }
 
         // Inside glass radiance is up to index^3 as high: what counts is what gets out.

@@ -36,7 +36,14 @@ void decide_light(const Scene& scene, std::uint64_t visible, Plan& plan) {
          is_path ? fmt::format("integrator = \"path\": emitted and direct light and {} bounce(s)",
                                scene.render.bounces)
                  : "integrator = \"direct\""});
-    if (is_path) return;
+    if (is_path) {
+        const double most = scene.render.clamp_indirect;
+        plan.decisions.push_back(
+            {"clamped indirect light", most > 0,
+             most > 0 ? fmt::format("clamp_indirect = {}: brighter indirect light is lost", most)
+                      : "clamp_indirect = 0: all light counts"});
+        return;
+    }
 
     // Diffuse and rough surfaces end a ray of the direct picture.
     const auto reflects = count_if_type(scene.bodies, [&](auto t) {

@@ -84,6 +84,7 @@ void write_render(const render::Settings& s, EffectiveWriter& out) {
     out.key("samples", std::int64_t{s.samples});
     out.key("integrator", kIntegrators[static_cast<std::size_t>(s.integrator)]);
     out.key("bounces", std::int64_t{s.bounces});
+    out.key("clamp_indirect", s.clamp_indirect);
     out.key("intersector", kIntersectors[static_cast<std::size_t>(s.intersector)]);
     out.key("max_steps", std::int64_t{s.max_steps});
     out.key("max_distance", s.max_distance);
@@ -117,6 +118,7 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         reader.read("integrator", integrator, kIntegrators);
         s.integrator = static_cast<render::Integrator>(integrator);
         reader.read("bounces", s.bounces, 0, kMaxBounces);
+        reader.read("clamp_indirect", s.clamp_indirect, Rule::kNonNegative);
         reader.read("intersector", intersector, kIntersectors);
         s.intersector = static_cast<render::Intersector>(intersector);
         reader.read("max_steps", s.max_steps, 1, kMaxSteps);

@@ -361,6 +361,40 @@ TEST(Path, AgreesWithAnIntegratorThatChoosesNoLights) {
     EXPECT_NEAR(square / differing, 1, 5 * std::sqrt(2.0 / (differing / 3.0)));
 }
 
+TEST(Path, ClampTakesFromIndirectLightOnly) {
+    // A floor that a mirror's bright image of a light burns a caustic onto, under a glowing
+    // ceiling.
+    TestScene scene = path_scene(2);
+    scene.materials.resize(3);
+    scene.materials[1].kind = MaterialKind::kMirror;
+    scene.materials[1].albedo = {0.9, 0.8, 0.7};
+    scene.materials[2].emission = Color::Constant(0.2);
+    scene.add(Hyperplane{Vec4::UnitY(), -1}, Vec4::Zero());
+    scene.add(Hypersphere{0.6}, Vec4(0.8, -0.4, 2, 0), {}, 1);
+    scene.add(Hyperplane{-Vec4::UnitY(), -3}, Vec4::Zero(), {}, 2);
+    scene.lights.spheres.push_back({Vec4(-0.8, 0.8, 2, 0.3), 0.6, Color::Constant(60)});
+    TestScene direct = scene, clamped = scene;
+    direct.settings.bounces = 0;
+    constexpr double kMost = 0.5;
+    clamped.settings.clamp_indirect = kMost;
+    const TracedScene all(scene), once(direct), most(clamped);
+    const Vec4 direction = Vec4(0, -1, 2, 0).normalized();
+    int taken = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Sampler sampler(i % 100, i / 100, 0);
+        const Color free = all.radiance(direction, sampler), c = most.radiance(direction, sampler);
+        // Each of two bounces adds the lights', what glows, and what its ray runs into.
+        const Color added = c - once.radiance(direction, sampler);
+        ASSERT_GE(added.minCoeff(), -1e-12);
+        ASSERT_LE(added.maxCoeff(), 0.2 + 6 * kMost);
+        const bool is_taken = (free > c + 1e-9).any();
+        ASSERT_TRUE(is_taken || (free == c).all());
+        taken += is_taken;
+    }
+    EXPECT_GT(taken, 20);
+    EXPECT_LT(taken, 2000);
+}
+
 TEST(Path, MirrorsShowWhatStandsBeforeThem) {
     // A mirror on the floor, 45 degrees: the wall, the sun's disc and a sphere light, in both
     // pictures; without bounces only the lights.
