@@ -54,6 +54,7 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
 
     Simulation simulation;
     simulation.types = type_properties(bodies);
+    simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
     simulation.settings = settings;
     return simulation;
@@ -69,13 +70,16 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.asleep = simulation.memory.asleep;
     if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);
     step.position.resize(count);
-    step.rotor.resize(count);
     step.velocity.resize(count);
-    step.angular_velocity.resize(count);
     step.bounds.resize(count);
-    const auto turns_unevenly = [](const TypeProperties& type) { return !type.isotropic; };
-    if (std::any_of(simulation.types.begin(), simulation.types.end(), turns_unevenly))
-        step.inverse_inertia.resize(count);
+    if (simulation.needs.uneven_inertia) step.inverse_inertia.resize(count);
+    if (simulation.needs.turning) {
+        step.rotor.resize(count);
+        step.angular_velocity.resize(count);
+    } else if (step.rotor.size() != count) {
+        step.rotor = simulation.bodies.rotor;
+        step.angular_velocity = simulation.bodies.angular_velocity;
+    }
 }
 
 void begin_contacts(StepData& step) {
@@ -83,12 +87,14 @@ void begin_contacts(StepData& step) {
     step.residual.clear();
 }
 
-bool is_finite(const StepData& step, Range bodies) {
+bool is_finite(const Simulation& simulation, const StepData& step, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const Rotor& r = step.rotor[i];
-        const double squares = step.position[i].squaredNorm() + step.velocity[i].squaredNorm() +
-                               dot(step.angular_velocity[i], step.angular_velocity[i]) +
-                               (r.s * r.s + dot(r.b, r.b) + r.p * r.p);
+        double squares = step.position[i].squaredNorm() + step.velocity[i].squaredNorm();
+        if (simulation.needs.turning) {
+            const Rotor& r = step.rotor[i];
+            squares += dot(step.angular_velocity[i], step.angular_velocity[i]) +
+                       (r.s * r.s + dot(r.b, r.b) + r.p * r.p);
+        }
         if (!std::isfinite(squares)) return false;
     }
     return true;
@@ -96,7 +102,7 @@ bool is_finite(const StepData& step, Range bodies) {
 
 void require_finite(const Simulation& simulation, const StepData& step) {
     for (std::size_t i = 0; i < step.position.size(); ++i)
-        if (!is_finite(step, {i, i + 1}))
+        if (!is_finite(simulation, step, {i, i + 1}))
             throw LeftFiniteRange(static_cast<BodyId>(i), simulation.memory.time + step.dt);
 }
 

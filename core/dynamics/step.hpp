@@ -26,7 +26,7 @@ void begin_step(const Simulation& simulation, StepData& step, double dt);
 void begin_contacts(StepData& step);
 
 /// Whether the motion of all bodies in the range is.
-bool is_finite(const StepData& step, Range bodies);
+bool is_finite(const Simulation& simulation, const StepData& step, Range bodies);
 
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);

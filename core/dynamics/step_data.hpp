@@ -8,6 +8,7 @@
 #include "core/contact/contact.hpp"
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/memory.hpp"
+#include "core/dynamics/needs.hpp"
 #include "core/dynamics/settings.hpp"
 #include "core/dynamics/type_properties.hpp"
 #include "core/dynamics/wide_rows.hpp"
@@ -87,11 +88,13 @@ struct Simulation {
     StepMemory memory;
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
+    Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
 };
 
-/// What the stages of one step hand on. Nothing in it survives the step, its memory does.
+/// What the stages of one step hand on. Nothing in it survives the step, its memory does; where
+/// nothing turns the first step's rotors and angular velocities stay, which are all later ones'.
 struct StepData {
     double dt = 0;    ///< [s]
     double h = 0;     ///< length of a sub-step [s]
@@ -102,7 +105,7 @@ struct StepData {
     std::vector<Vec4> velocity;
     std::vector<Bivector> angular_velocity;
 
-    /// World, in the middle of the sub-step, of the bodies that are not isotropic.
+    /// World, in the middle of the sub-step, of the bodies that are not isotropic and awake.
     std::vector<BivectorMap> inverse_inertia;
 
     std::vector<Bounds> bounds;     ///< of every body

@@ -42,7 +42,7 @@ void World::find_contacts() {
     for (bool look = true; look;) {
         step_.contacts.clear();
         tesserae::find_contacts(simulation_, step_, {0, step_.pairs.size()}, step_.contacts);
-        look = wake_touched(step_);
+        look = wake_touched(simulation_, step_);
         if (look) tesserae::find_pairs(simulation_, step_);
     }
     begin_contacts(step_);
