@@ -142,6 +142,9 @@ void ParallelWorld::require_finite() const {
 StepReport ParallelWorld::finish_step() {
     const Trace::Span span(trace_, "finish_step", step_.contacts.size());
     require_finite();
+    begin_report(step_);
+    for_each_range(step_.contacts.size(), kReportPiece,
+                   [&](Range contacts) { sum_contacts(step_, contacts); });
     return commit_step(simulation_, step_);
 }
 

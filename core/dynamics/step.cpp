@@ -13,12 +13,10 @@ namespace {
 StepReport report_of(const StepData& step) {
     StepReport report;
     double sum = 0;
-    for (std::size_t i = 0; i < step.contacts.size(); ++i) {
-        const double overlap = std::max(0.0, -step.contacts[i].separation);
-        if (step.contacts[i].separation > 0 && !(step.impulses[i].normal > 0)) continue;
-        ++report.contacts;
-        sum += overlap;
-        report.penetration = std::max(report.penetration, overlap);
+    for (const ContactSums& piece : step.sums) {
+        report.contacts += piece.contacts;
+        sum += piece.sum;
+        report.penetration = std::max(report.penetration, piece.penetration);
     }
     if (report.contacts > 0) report.mean_penetration = sum / static_cast<double>(report.contacts);
     for (const double residual : step.residual)
@@ -128,6 +126,25 @@ void end_substep(const Simulation& simulation, StepData& step) {
     }
     all.insert(all.end(), own, step.pushing.end());
     step.recalled.swap(all);
+}
+
+void begin_report(StepData& step) {
+    step.sums.resize((step.contacts.size() + kReportPiece - 1) / kReportPiece);
+}
+
+void sum_contacts(StepData& step, Range contacts) {
+    for (std::size_t begin = contacts.begin; begin < contacts.end; begin += kReportPiece) {
+        ContactSums sums;
+        for (std::size_t i = begin; i < std::min(begin + kReportPiece, contacts.end); ++i) {
+            const double separation = step.contacts[i].separation;
+            if (separation > 0 && !(step.impulses[i].normal > 0)) continue;
+            const double overlap = std::max(0.0, -separation);
+            ++sums.contacts;
+            sums.sum += overlap;
+            sums.penetration = std::max(sums.penetration, overlap);
+        }
+        step.sums[begin / kReportPiece] = sums;
+    }
 }
 
 StepReport commit_step(Simulation& simulation, StepData& step) {

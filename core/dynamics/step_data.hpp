@@ -59,6 +59,12 @@ struct Islands {
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 
+/// Of the contacts of one piece of the list, for the step's report.
+struct ContactSums {
+    std::uint64_t contacts = 0;
+    double penetration = 0, sum = 0;  ///< deepest overlap and all overlaps [m]
+};
+
 /// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
 /// p <- max(0, keep p + mass (target - v)).
 struct NormalPass {
@@ -119,6 +125,7 @@ struct StepData {
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
     std::vector<double> residual;          ///< of every island [m/s]
     std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
+    std::vector<ContactSums> sums;         ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
     std::vector<ContactImpulse> merged_impulses;

@@ -74,6 +74,8 @@ void World::relax_islands() {
 
 StepReport World::finish_step() {
     require_finite(simulation_, step_);
+    begin_report(step_);
+    sum_contacts(step_, {0, step_.contacts.size()});
     return commit_step(simulation_, step_);
 }
 
