@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -58,7 +57,7 @@ struct Case {
     std::string with, without;
 };
 
-// ---- scenes ----------------------------------------------------------------------------------
+// Scenes are text, as a user writes them.
 const std::string kSphere = "shape = \"hypersphere\"\nradius = 0.5\n";
 const std::string kSmooth = "friction = 0\n", kFixedRotation = "fixed = [\"rotation\"]\n";
 const std::string kFixed = "fixed = [\"position\", \"rotation\"]\n";
@@ -83,13 +82,13 @@ std::string heap(const std::string& lines, const std::string& other = "") {
             fmt::format("[[body]]\nshape = \"hyperplane\"\nnormal = {}\noffset = -3.8\n", normal);
     return text + lattice("[6, 6, 6, 6]", 1.2, 4, 0.1, lines) + other;
 }
-/// 10^4 spheres that fly through each other's gaps.
+/// 10^4 spheres that fly along.
 std::string gas(const std::string& lines) {
     const std::string all = kSphere + kSmooth + "restitution = 1\n" + lines;
     return physics("gravity = [0, 0, 0, 0]\n") +
            lattice("[10, 10, 10, 10]", 2.4, 0, 0.4, all + "velocity = [1, 0, 0, 0]\n");
 }
-/// 5^3 towers of ten cubes.
+/// 5^3 towers of ten boxes.
 std::string towers(const std::string& settings) {
     return physics(settings) + kFloor +
            lattice("[5, 10, 5, 5]", 1, 5, 0, "shape = \"hyperbox\"\nsize = [0.9, 1, 0.9, 0.9]\n");
@@ -120,13 +119,12 @@ std::vector<Case> all_cases() {
     const std::string fixed = physics() + lattice("[10, 10, 10, 10]", 2, 0, 0, kSphere + kFixed);
     const std::string pairs = physics() + kFloor + lattice("[10, 1, 10, 10]", 2, 0.5, 0, kSphere);
     const std::string alone = body(kSphere + kAbove), smooth_alone = smooth + kAbove;
-    const std::string drifting = physics("duration = 0.2\ngravity = [0, 0, 0, 0]\n") +
-                                 body(kSphere + "velocity = [1e-3, 0, 0, 0]\n");
+    const std::string resting = physics("duration = 0.2\ngravity = [0, 0, 0, 0]\n");
+    const std::string drifting = resting + body(kSphere + "velocity = [1e-3, 0, 0, 0]\n");
     const std::string key =
         "[[camera.key]]\ntime = 0\nposition = [0, 0, -40, 0]\n"
         "[[camera.key]]\ntime = 1\nposition = [0, 0, -40, 1e-9]\n";
     const std::string far = view(kFar) + block();
-    const std::string at_rest = physics("duration = 0.2\n") + far;
     return {
         {"friction", "friction", kStep, 240, heap(held + rubs), heap(held + kSmooth)},
         {"friction_and_rotors", "friction", kStep, 240, heap(kSphere + rubs), heap(smooth)},
@@ -151,11 +149,10 @@ std::vector<Case> all_cases() {
          view(kFar + "aperture = 0\nfocus_distance = 40\n") + block()},
         {"shutter", "motion blur", kFilm, 0, view(kFar + "shutter = 1e-9\n") + block() + drifting,
          view(kFar) + block() + drifting},
-        {"frames_at_rest", "moving camera", kFilm, 0, at_rest + key, at_rest},
+        {"frames_at_rest", "moving camera", kFilm, 0, resting + far + key, resting + far},
     };
 }
 
-// ---- measurement -----------------------------------------------------------------------------
 fs::path own_folder() {
     return fs::temp_directory_path() / fmt::format("tesserae-leave-out-{}", getpid());
 }
@@ -207,10 +204,10 @@ Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
         StepData step = *start;
         return time_of([&] {
             builder->build(*simulation, step);
-            for (std::size_t i = 0; i < step.islands.size(); ++i)
+            for (std::size_t i = 0; i < step.islands.size(); ++i) {
                 solve_island(*simulation, step, i);
-            for (std::size_t i = 0; i < step.islands.size(); ++i)
                 relax_island(*simulation, step, i);
+            }
         });
     };
 }
@@ -246,18 +243,10 @@ Work work_of(const Case& c, bool with) {
     if (*c.decision != 0 && left_out == with)
         throw RunError(fmt::format("{}: the plan does not {} \"{}\"", c.name,
                                    with ? "need" : "leave out", c.decision));
-    switch (c.part) {
-        case Part::kStep:
-            return steps_of(scene, c.settle);
-        case Part::kIslands:
-            return islands_of(scene, c.settle, kColouredFrom);
-        case Part::kColours:
-            return islands_of(scene, c.settle, with ? 1 : kNever);
-        case Part::kSimulate:
-        case Part::kFilm:
-            return program_of(scene, c.part == Part::kFilm, folder);
-    }
-    return {};
+    if (c.part == Part::kStep) return steps_of(scene, c.settle);
+    if (c.part == Part::kIslands) return islands_of(scene, c.settle, kColouredFrom);
+    if (c.part == Part::kColours) return islands_of(scene, c.settle, with ? 1 : kNever);
+    return program_of(scene, c.part == Part::kFilm, folder);
 }
 
 double quantile(std::vector<double> values, double part) {
@@ -278,7 +267,6 @@ void measure(const Case& c) {
     fmt::print("{},{:.4g},{:.4g},{:.4g},{:.4g},{:.0f}\n", c.name, quantile(needed, 0.5),
                quantile(left_out, 0.5), quantile(needed, 0) / quantile(left_out, 0), median,
                100 * (quantile(ratio, 0.75) - quantile(ratio, 0.25)) / median);
-    std::fflush(stdout);
 }
 
 }  // namespace
@@ -287,7 +275,7 @@ void measure(const Case& c) {
 int main(int argc, char** argv) {
     using namespace tesserae::bench;
     const std::vector<std::string> names(argv + 1, argv + argc);
-    int status = 0;
+    int status = 0;  // 1 if the plan decides otherwise than the table says
     std::filesystem::create_directories(own_folder());
     fmt::print("part,needed_ms,left_out_ms,ratio_of_least,ratio,spread_percent\n");
     tesserae::parallel::Threads(1).run([&] {
