@@ -94,12 +94,12 @@ void decide_physics(const Scene& scene, Plan& plan) {
          needs.turning ? "bodies turn, or contacts can turn them"
                        : "nothing turns at the start, and no contact turns a sphere without "
                          "friction or what has a fixed rotation"});
-    if (needs.turning)
-        plan.decisions.push_back(
-            {"gyroscopic term and 6x6 inertia", needs.uneven_inertia,
-             needs.uneven_inertia
-                 ? "there are bodies whose inertia depends on the direction"
-                 : "what turns are spheres and cubes: their inertia is one number"});
+    const char* inertia = "there are bodies whose inertia depends on the direction";
+    if (!needs.turning)
+        inertia = "nothing turns";
+    else if (!needs.uneven_inertia)
+        inertia = "what turns are spheres and cubes: their inertia is one number";
+    plan.decisions.push_back({"gyroscopic term and 6x6 inertia", needs.uneven_inertia, inertia});
     decide_solver(scene, needs, fit_floats(types), plan);
 }
 

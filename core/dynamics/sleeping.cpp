@@ -94,7 +94,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
         if (is_asleep(step, id) || next[id] == kAwake) continue;
         step.asleep[id] = next[id];
         step.velocity[id].setZero();
-        step.angular_velocity[id] = {};
+        if (simulation.needs.turning) step.angular_velocity[id] = {};
     }
 }
 

@@ -77,6 +77,7 @@ TEST(Plan, LeavesOutOfAStepWhatNoBodyHas) {
     EXPECT_FALSE(needed(smooth + body(box("[1, 1, 1, 1]")), inertia));
     EXPECT_TRUE(needed(smooth + body(box("[1, 2, 1, 1]")), inertia));
     const std::string held = "fixed = [\"position\", \"rotation\"]\n";
+    EXPECT_FALSE(needed(smooth + body(box("[1, 2, 1, 1]") + held), inertia));
     EXPECT_FALSE(needed(body(sphere) + body(box("[1, 2, 1, 1]") + held), inertia));
     EXPECT_FALSE(needed(smooth + body(box("[1, 2, 1, 1]") + held), rotors));
 
