@@ -4,6 +4,7 @@
 #   bash bench/run.sh              all parts, about an hour
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
+#   bash bench/run.sh leave-out    what leaving out parts saves, two minutes
 #   bash bench/run.sh rays         view, shadow and bounce rays
 #   bash bench/run.sh extremes     stiff and extreme scenes
 #   bash bench/run.sh light        error of the traced light against samples, a minute
@@ -13,10 +14,10 @@
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed rays extremes light bullet peers scaling)
+parts=(accuracy speed leave-out rays extremes light bullet peers scaling)
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | rays | extremes | light | bullet | peers | scaling | scaling-million) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | rays | extremes | light | bullet | peers | scaling | scaling-million]" >&2
+    case $1 in accuracy | speed | leave-out | rays | extremes | light | bullet | peers | scaling | scaling-million) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [accuracy | speed | leave-out | rays | extremes | light | bullet | peers | scaling | scaling-million]" >&2
         exit 2
         ;;
     esac
@@ -35,7 +36,7 @@ load() { cut -d ' ' -f 1 /proc/loadavg; }
 head_of() {
     local commit changed
     commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
-    changed=$(git -C "$root" status --porcelain -- core parallel render CMakeLists.txt bench/'*pp' bench/experiments 2>/dev/null || true)
+    changed=$(git -C "$root" status --porcelain -- core parallel render scenes CMakeLists.txt bench/'*pp' bench/experiments 2>/dev/null || true)
     {
         echo "# machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores"
         echo "# load average of one minute: $2 before, $(load) after (one program of at most $(nproc) threads is ours)"
@@ -61,6 +62,12 @@ speed() {
     head_of speed "$1"
     /usr/bin/python3 -B "$root/bench/report.py" "$raw/head.txt" "$raw/hot_loops.json" \
         "$raw"/contacts_{double,float}.json "$results"
+}
+
+leave-out() {
+    "$folder/bench/leave_out" >"$raw/leave_out.csv"
+    head_of leave-out "$1"
+    cat "$raw/head.txt" "$raw/leave_out.csv" >"$results/leave_out.csv"
 }
 
 rays() {

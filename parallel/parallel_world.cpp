@@ -87,7 +87,7 @@ void ParallelWorld::find_contacts() {
             step_.contacts);
         look = any_range(step_.contacts.size(), kContactGrain,
                          [&](Range contacts) { return touches_sleeper(step_, contacts); }) &&
-               wake_touched(step_);
+               wake_touched(simulation_, step_);
         if (look) stages_->kept_pairs.choose_pairs(simulation_, step_);
     }
     begin_contacts(step_);
@@ -134,13 +134,17 @@ void ParallelWorld::relax_islands() {
 /// Pieces find out whether any body is not finite, and only then the lowest is looked for.
 void ParallelWorld::require_finite() const {
     const std::size_t count = simulation_.bodies.size();
-    if (any_range(count, kBodyGrain, [&](Range bodies) { return !is_finite(step_, bodies); }))
+    if (any_range(count, kBodyGrain,
+                  [&](Range bodies) { return !is_finite(simulation_, step_, bodies); }))
         tesserae::require_finite(simulation_, step_);
 }
 
 StepReport ParallelWorld::finish_step() {
     const Trace::Span span(trace_, "finish_step", step_.contacts.size());
     require_finite();
+    begin_report(step_);
+    for_each_range(step_.contacts.size(), kReportPiece,
+                   [&](Range contacts) { sum_contacts(step_, contacts); });
     return commit_step(simulation_, step_);
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "core/dynamics/type_properties.hpp"
+#include "core/dynamics/islands.hpp"
+#include "core/dynamics/needs.hpp"
 #include "core/error.hpp"
 #include "render/frame_scene.hpp"
 #include "scenes/memory.hpp"
@@ -44,22 +45,25 @@ bool any_motion(const Scene& scene) {
 }
 
 /// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
-void decide_solver(const Scene& scene, Plan& plan) {
+void decide_solver(const Scene& scene, const Needs& needs, bool fits_floats, Plan& plan) {
     const PhysicsSettings& physics = *scene.physics;
     if (plan.movable_bodies == 0) {
         plan.decisions.push_back({"contacts", false, "no body can be moved by them"});
         return;
     }
-    const auto any_type = [&](auto&& has) {
-        return std::any_of(scene.bodies.types.begin(), scene.bodies.types.end(), has);
-    };
-    const bool rubs = any_type([](const BodyType& type) { return type.friction > 0; });
-    plan.decisions.push_back({"friction", rubs,
-                              rubs ? "contacts have tangent rows"
-                                   : "friction = 0 everywhere: contacts have no tangent rows"});
-    const bool bounces = any_type([](const BodyType& type) { return type.restitution > 0; });
     plan.decisions.push_back(
-        {"restitution", bounces, bounces ? "contacts may rebound" : "restitution = 0 everywhere"});
+        {"friction", needs.friction,
+         needs.friction ? "contacts have tangent rows"
+                        : "friction = 0 of all that moves: contacts have no tangent rows"});
+    plan.decisions.push_back({"restitution", needs.restitution,
+                              needs.restitution ? "contacts may rebound"
+                                                : "restitution = 0 everywhere: nothing rebounds"});
+    plan.decisions.push_back(
+        {"islands in colours", fits_floats,
+         fits_floats ? fmt::format("islands of {} contacts or more, eight contacts at a time in "
+                                   "float; smaller ones one by one",
+                                   kColouredFrom)
+                     : "masses or sizes are too far apart for float: contacts one by one"});
     plan.decisions.push_back(
         {"sub-steps", physics.substeps > 1,
          fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations)});
@@ -84,13 +88,19 @@ void decide_physics(const Scene& scene, Plan& plan) {
                                               plan.movable_bodies, plan.bodies)});
     if (!plan.moves) return;
     const std::vector<TypeProperties> types = type_properties(scene.bodies);
-    const bool uneven = std::any_of(types.begin(), types.end(),
-                                    [](const TypeProperties& type) { return !type.isotropic; });
+    const Needs needs = needs_of(scene.bodies, types);
     plan.decisions.push_back(
-        {"gyroscopic term and 6x6 inertia", uneven,
-         uneven ? "there are bodies whose inertia depends on the direction"
-                : "what turns are spheres and cubes: their inertia is one number"});
-    decide_solver(scene, plan);
+        {"rotors and angular velocities", needs.turning,
+         needs.turning ? "bodies turn, or contacts can turn them"
+                       : "nothing turns at the start, and no contact turns a sphere without "
+                         "friction or what has a fixed rotation"});
+    const char* inertia = "there are bodies whose inertia depends on the direction";
+    if (!needs.turning)
+        inertia = "nothing turns";
+    else if (!needs.uneven_inertia)
+        inertia = "what turns are spheres and cubes: their inertia is one number";
+    plan.decisions.push_back({"gyroscopic term and 6x6 inertia", needs.uneven_inertia, inertia});
+    decide_solver(scene, needs, fit_floats(types), plan);
 }
 
 }  // namespace

@@ -33,9 +33,9 @@ std::uint32_t run_length(std::span<const Contact> contacts) {
 
 }  // namespace
 
-bool fit_floats(const Simulation& simulation) {
+bool fit_floats(std::span<const TypeProperties> types) {
     int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
-    for (const TypeProperties& type : simulation.types) {
+    for (const TypeProperties& type : types) {
         if (!type.movable) continue;
         if (!(type.radius > 1e-9 && type.radius < 1e9)) return false;
         const int exponent = std::ilogb(type.mass);
@@ -46,11 +46,8 @@ bool fit_floats(const Simulation& simulation) {
 
 void Colouring::begin(const Simulation& simulation, StepData& step) {
     ColouredIslands& wide = step.wide;
-    const auto any = [&](const auto& is) {
-        return std::any_of(simulation.types.begin(), simulation.types.end(), is);
-    };
-    wide.friction = any([](const TypeProperties& type) { return type.friction > 0; });
-    wide.turns_unevenly = any([](const TypeProperties& type) { return !type.isotropic; });
+    wide.friction = simulation.needs.friction;
+    wide.turns_unevenly = simulation.needs.uneven_inertia;
     wide.first_body.assign(1, 1);
     wide.first_colour.assign(1, 0);
     wide.mass_unit.clear();

@@ -13,8 +13,9 @@ constexpr double kNoResponse = 1e-9;
 /// Change of velocity at an offset r of a body by an impulse there.
 Vec4 response(const Simulation& simulation, const StepData& step, BodyId id, const Vec4& r,
               const Vec4& impulse) {
-    return simulation.type_of(id).inverse_mass * impulse +
-           velocity_at(angular_response(simulation, step, id, wedge(r, impulse)), r);
+    const Vec4 moved = simulation.type_of(id).inverse_mass * impulse;
+    if (!simulation.needs.turning) return moved;
+    return moved + velocity_at(angular_response(simulation, step, id, wedge(r, impulse)), r);
 }
 
 double greatest_response(const TypeProperties& type) {
@@ -115,7 +116,8 @@ void add_rebound(const Simulation& simulation, double h, const Contact& contact,
 ContactTargets targets_of(const Simulation& simulation, const StepData& step,
                           const Contact& contact, double normal_velocity) {
     ContactTargets targets = targets_of_overlap(simulation, step.h, contact);
-    add_rebound(simulation, step.h, contact, normal_velocity, targets);
+    if (simulation.needs.restitution)
+        add_rebound(simulation, step.h, contact, normal_velocity, targets);
     return targets;
 }
 
@@ -138,8 +140,9 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
     row.r_b = contact.point - step.position[row.b];
     row.friction = friction_of(simulation, row.a, row.b);
     set_masses(simulation, step, row);
-    const double normal_velocity = row.normal.dot(relative_velocity(step, row));
-    const ContactTargets targets = targets_of(simulation, step, contact, normal_velocity);
+    const Vec4 v =
+        relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
+    const ContactTargets targets = targets_of(simulation, step, contact, row.normal.dot(v));
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 

@@ -47,9 +47,12 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
                     const ContactImpulse& impulse);
 
 /// Of b against a at the contact point [m/s].
-inline Vec4 relative_velocity(const StepData& step, const ContactRow& row) {
-    return step.velocity[row.b] + velocity_at(step.angular_velocity[row.b], row.r_b) -
-           step.velocity[row.a] - velocity_at(step.angular_velocity[row.a], row.r_a);
+/// @param turning   see Needs
+inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, BodyId b,
+                              const Vec4& r_b, bool turning) {
+    if (!turning) return step.velocity[b] - step.velocity[a];
+    return step.velocity[b] + velocity_at(step.angular_velocity[b], r_b) - step.velocity[a] -
+           velocity_at(step.angular_velocity[a], r_a);
 }
 
 /// The nearest impulse that friction allows.

@@ -20,7 +20,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
-    const bool fits = fit_floats(simulation);
+    const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const Range places = islands.places(island);

@@ -12,6 +12,7 @@ void advance_half(const Simulation& simulation, StepData& step, BodyId id) {
     if (!type.bounded) return;
     const double half = 0.5 * step.h;
     step.position[id] += half * step.velocity[id];
+    if (!simulation.needs.turning) return;
     turn_freely(type, simulation.settings.integrator, half, step.rotor[id],
                 step.angular_velocity[id]);
 }
@@ -48,19 +49,25 @@ void advance_first_half(const Simulation& simulation, StepData& step, Range bodi
         const auto id = static_cast<BodyId>(i);
         if (step.substep == 0) {
             step.position[id] = last.position[id];
-            step.rotor[id] = last.rotor[id];
             step.velocity[id] = last.velocity[id];
-            step.angular_velocity[id] = last.angular_velocity[id];
+            if (simulation.needs.turning) {
+                step.rotor[id] = last.rotor[id];
+                step.angular_velocity[id] = last.angular_velocity[id];
+            }
         }
         advance_half(simulation, step, id);
-        const TypeProperties& type = simulation.type_of(id);
-        if (!type.isotropic) step.inverse_inertia[id] = world_inverse_inertia(type, step.rotor[id]);
+        if (!is_asleep(step, id)) set_inverse_inertia(simulation, step, id);
     }
 }
 
 void advance_second_half(const Simulation& simulation, StepData& step, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i)
         advance_half(simulation, step, static_cast<BodyId>(i));
+}
+
+void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (!type.isotropic) step.inverse_inertia[id] = world_inverse_inertia(type, step.rotor[id]);
 }
 
 void integrate_velocities(const Simulation& simulation, StepData& step, Range bodies) {

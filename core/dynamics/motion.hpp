@@ -8,9 +8,12 @@ namespace tesserae {
 /// half of the first sub-step starts from the last state. With the velocities changed between the
 /// two halves a sub-step moves x += h (v0 + v1) / 2, which is exact under constant gravity. Bodies
 /// that turn freely keep their angular momentum: turn_freely(). The first half ends where contacts
-/// act, and leaves step.inverse_inertia there.
+/// act, and leaves there step.inverse_inertia of the bodies that are awake.
 void advance_first_half(const Simulation& simulation, StepData& step, Range bodies);
 void advance_second_half(const Simulation& simulation, StepData& step, Range bodies);
+
+/// step.inverse_inertia of a body as it is turned now; none if it is isotropic.
+void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id);
 
 /// Gravity over the whole sub-step, on the bodies that fall and are awake.
 void integrate_velocities(const Simulation& simulation, StepData& step, Range bodies);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/dynamics/motion.hpp"
+
 namespace tesserae {
 namespace {
 
@@ -42,7 +44,7 @@ bool touches_sleeper(const StepData& step, Range contacts) {
     return false;
 }
 
-bool wake_touched(StepData& step) {
+bool wake_touched(const Simulation& simulation, StepData& step) {
     if (step.asleep.empty()) return false;
     std::vector<BodyId> woken;
     for (const Contact& contact : step.contacts)
@@ -50,9 +52,12 @@ bool wake_touched(StepData& step) {
             if (is_asleep(step, id)) woken.push_back(step.asleep[id]);
     if (woken.empty()) return false;
     std::sort(woken.begin(), woken.end());
-    for (BodyId& island : step.asleep)
-        if (island != kAwake && std::binary_search(woken.begin(), woken.end(), island))
-            island = kAwake;
+    for (BodyId id = 0; id < step.asleep.size(); ++id) {
+        BodyId& island = step.asleep[id];
+        if (island == kAwake || !std::binary_search(woken.begin(), woken.end(), island)) continue;
+        island = kAwake;
+        set_inverse_inertia(simulation, step, id);
+    }
     return true;
 }
 
@@ -89,7 +94,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
         if (is_asleep(step, id) || next[id] == kAwake) continue;
         step.asleep[id] = next[id];
         step.velocity[id].setZero();
-        step.angular_velocity[id] = {};
+        if (simulation.needs.turning) step.angular_velocity[id] = {};
     }
 }
 

@@ -19,7 +19,7 @@ bool touches_sleeper(const StepData& step, Range contacts);
 /// The sleeping islands that a contact reaches are awake from now on. Their bodies' contacts among
 /// themselves have then not been looked for: look again.
 /// @return whether any woke
-bool wake_touched(StepData& step);
+bool wake_touched(const Simulation& simulation, StepData& step);
 
 /// After the last sub-step: counts for how long bodies have been still, and lets the islands fall
 /// asleep all of whose bodies have been so long enough and which touch nothing driven. The

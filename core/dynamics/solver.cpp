@@ -10,18 +10,21 @@
 namespace tesserae {
 namespace {
 
+template <bool kTurning>
 void apply_impulse(const Simulation& simulation, StepData& step, BodyId id, const Vec4& r,
                    const Vec4& impulse) {
     const TypeProperties& type = simulation.type_of(id);
     if (!type.movable) return;
     step.velocity[id] += type.inverse_mass * impulse;
-    step.angular_velocity[id] += angular_response(simulation, step, id, wedge(r, impulse));
+    if constexpr (kTurning)
+        step.angular_velocity[id] += angular_response(simulation, step, id, wedge(r, impulse));
 }
 
+template <bool kTurning>
 void apply_impulse(const Simulation& simulation, StepData& step, const ContactRow& row,
                    const Vec4& impulse) {
-    apply_impulse(simulation, step, row.a, row.r_a, -impulse);
-    apply_impulse(simulation, step, row.b, row.r_b, impulse);
+    apply_impulse<kTurning>(simulation, step, row.a, row.r_a, -impulse);
+    apply_impulse<kTurning>(simulation, step, row.b, row.r_b, impulse);
 }
 
 /// The friction impulse for a relative velocity v: that which ends the slip, if friction allows it.
@@ -41,10 +44,10 @@ Vec4 friction_impulse(const ContactRow& row, const Vec4& v) {
 /// impulse allows; what the normal impulse does to the slip is known from the row, so that the
 /// bodies' velocities are read and written once.
 /// @return the change of the normal impulse [N s]
-template <NormalPass ContactRow::*kPass>
+template <NormalPass ContactRow::*kPass, bool kTurning>
 double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
     const NormalPass& pass = row.*kPass;
-    const Vec4 v = relative_velocity(step, row);
+    const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
     const double normal = std::max(
         0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - row.normal.dot(v)));
     const double change = normal - row.normal_impulse;
@@ -56,34 +59,44 @@ double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) 
         impulse += tangent - row.tangent_impulse;
         row.tangent_impulse = tangent;
     }
-    apply_impulse(simulation, step, row, impulse);
+    apply_impulse<kTurning>(simulation, step, row, impulse);
     return change;
 }
 
 /// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
-template <NormalPass ContactRow::*kPass>
+template <NormalPass ContactRow::*kPass, bool kTurning>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
     double residual = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
-        const double change = solve_row<kPass>(simulation, step, row);
+        const double change = solve_row<kPass, kTurning>(simulation, step, row);
         if (sweep.last && change != 0)
             residual = std::max(residual, std::abs(change) / row.relax.mass);
     }
     return residual;
 }
 
+template <bool kTurning>
 double iterate(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                Pass pass) {
     double residual = 0;
     for (int i = 0; i < simulation.settings.iterations; ++i) {
         const Sweep sweep = sweep_of(simulation, pass, i);
         residual = pass == Pass::kSolve
-                       ? sweep_rows<&ContactRow::solve>(simulation, step, rows, sweep)
-                       : sweep_rows<&ContactRow::relax>(simulation, step, rows, sweep);
+                       ? sweep_rows<&ContactRow::solve, kTurning>(simulation, step, rows, sweep)
+                       : sweep_rows<&ContactRow::relax, kTurning>(simulation, step, rows, sweep);
     }
     return residual;
+}
+
+/// The impulses that the rows start from, and all iterations.
+template <bool kTurning>
+double solve_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows) {
+    for (const ContactRow& row : rows)
+        apply_impulse<kTurning>(simulation, step, row,
+                                row.normal_impulse * row.normal + row.tangent_impulse);
+    return iterate<kTurning>(simulation, step, rows, Pass::kSolve);
 }
 
 std::span<ContactRow> rows_of(StepData& step, std::size_t island) {
@@ -133,17 +146,19 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     if (step.islands.is_coloured(island))
         return solve_wide_island(simulation, step, island, OneThread{});
     make_rows(simulation, step, island);
-    const std::span<ContactRow> rows = rows_of(step, island);
-    for (const ContactRow& row : rows)
-        apply_impulse(simulation, step, row, row.normal_impulse * row.normal + row.tangent_impulse);
-    step.residual[island] = iterate(simulation, step, rows, Pass::kSolve);
+    step.residual[island] = simulation.needs.turning
+                                ? solve_rows<true>(simulation, step, rows_of(step, island))
+                                : solve_rows<false>(simulation, step, rows_of(step, island));
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return relax_wide_island(simulation, step, island, OneThread{});
     if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] = iterate(simulation, step, rows_of(step, island), Pass::kRelax);
+        step.residual[island] =
+            simulation.needs.turning
+                ? iterate<true>(simulation, step, rows_of(step, island), Pass::kRelax)
+                : iterate<false>(simulation, step, rows_of(step, island), Pass::kRelax);
     keep_impulses(step, island);
 }
 

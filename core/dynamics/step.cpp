@@ -13,12 +13,10 @@ namespace {
 StepReport report_of(const StepData& step) {
     StepReport report;
     double sum = 0;
-    for (std::size_t i = 0; i < step.contacts.size(); ++i) {
-        const double overlap = std::max(0.0, -step.contacts[i].separation);
-        if (step.contacts[i].separation > 0 && !(step.impulses[i].normal > 0)) continue;
-        ++report.contacts;
-        sum += overlap;
-        report.penetration = std::max(report.penetration, overlap);
+    for (const ContactSums& piece : step.sums) {
+        report.contacts += piece.contacts;
+        sum += piece.sum;
+        report.penetration = std::max(report.penetration, piece.penetration);
     }
     if (report.contacts > 0) report.mean_penetration = sum / static_cast<double>(report.contacts);
     for (const double residual : step.residual)
@@ -54,6 +52,7 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
 
     Simulation simulation;
     simulation.types = type_properties(bodies);
+    simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
     simulation.settings = settings;
     return simulation;
@@ -69,13 +68,16 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.asleep = simulation.memory.asleep;
     if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);
     step.position.resize(count);
-    step.rotor.resize(count);
     step.velocity.resize(count);
-    step.angular_velocity.resize(count);
     step.bounds.resize(count);
-    const auto turns_unevenly = [](const TypeProperties& type) { return !type.isotropic; };
-    if (std::any_of(simulation.types.begin(), simulation.types.end(), turns_unevenly))
-        step.inverse_inertia.resize(count);
+    if (simulation.needs.uneven_inertia) step.inverse_inertia.resize(count);
+    if (simulation.needs.turning) {
+        step.rotor.resize(count);
+        step.angular_velocity.resize(count);
+    } else if (step.rotor.size() != count) {
+        step.rotor = simulation.bodies.rotor;
+        step.angular_velocity = simulation.bodies.angular_velocity;
+    }
 }
 
 void begin_contacts(StepData& step) {
@@ -83,12 +85,14 @@ void begin_contacts(StepData& step) {
     step.residual.clear();
 }
 
-bool is_finite(const StepData& step, Range bodies) {
+bool is_finite(const Simulation& simulation, const StepData& step, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const Rotor& r = step.rotor[i];
-        const double squares = step.position[i].squaredNorm() + step.velocity[i].squaredNorm() +
-                               dot(step.angular_velocity[i], step.angular_velocity[i]) +
-                               (r.s * r.s + dot(r.b, r.b) + r.p * r.p);
+        double squares = step.position[i].squaredNorm() + step.velocity[i].squaredNorm();
+        if (simulation.needs.turning) {
+            const Rotor& r = step.rotor[i];
+            squares += dot(step.angular_velocity[i], step.angular_velocity[i]) +
+                       (r.s * r.s + dot(r.b, r.b) + r.p * r.p);
+        }
         if (!std::isfinite(squares)) return false;
     }
     return true;
@@ -96,7 +100,7 @@ bool is_finite(const StepData& step, Range bodies) {
 
 void require_finite(const Simulation& simulation, const StepData& step) {
     for (std::size_t i = 0; i < step.position.size(); ++i)
-        if (!is_finite(step, {i, i + 1}))
+        if (!is_finite(simulation, step, {i, i + 1}))
             throw LeftFiniteRange(static_cast<BodyId>(i), simulation.memory.time + step.dt);
 }
 
@@ -122,6 +126,25 @@ void end_substep(const Simulation& simulation, StepData& step) {
     }
     all.insert(all.end(), own, step.pushing.end());
     step.recalled.swap(all);
+}
+
+void begin_report(StepData& step) {
+    step.sums.resize((step.contacts.size() + kReportPiece - 1) / kReportPiece);
+}
+
+void sum_contacts(StepData& step, Range contacts) {
+    for (std::size_t begin = contacts.begin; begin < contacts.end; begin += kReportPiece) {
+        ContactSums sums;
+        for (std::size_t i = begin; i < std::min(begin + kReportPiece, contacts.end); ++i) {
+            const double separation = step.contacts[i].separation;
+            if (separation > 0 && !(step.impulses[i].normal > 0)) continue;
+            const double overlap = std::max(0.0, -separation);
+            ++sums.contacts;
+            sums.sum += overlap;
+            sums.penetration = std::max(sums.penetration, overlap);
+        }
+        step.sums[begin / kReportPiece] = sums;
+    }
 }
 
 StepReport commit_step(Simulation& simulation, StepData& step) {

@@ -26,7 +26,7 @@ void begin_step(const Simulation& simulation, StepData& step, double dt);
 void begin_contacts(StepData& step);
 
 /// Whether the motion of all bodies in the range is.
-bool is_finite(const StepData& step, Range bodies);
+bool is_finite(const Simulation& simulation, const StepData& step, Range bodies);
 
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);
@@ -37,7 +37,17 @@ void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpul
 /// Keeps step.pushing for the next sub-step, beside the impulses of bodies that sleep.
 void end_substep(const Simulation& simulation, StepData& step);
 
-/// Makes the step's result the present state, and what the next one needs of it the memory.
+/// Contacts that are added up one after the other; the sums of pieces are then added in their
+/// order, so that the report has the same bits for any number of threads.
+constexpr std::size_t kReportPiece = 1024;
+
+/// Sizes step.sums.
+void begin_report(StepData& step);
+/// @param contacts   begins with a piece
+void sum_contacts(StepData& step, Range contacts);
+
+/// Makes the step's result the present state, and what the next one needs of it the memory. Needs
+/// step.sums.
 StepReport commit_step(Simulation& simulation, StepData& step);
 
 }  // namespace tesserae

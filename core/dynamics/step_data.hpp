@@ -8,6 +8,7 @@
 #include "core/contact/contact.hpp"
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/memory.hpp"
+#include "core/dynamics/needs.hpp"
 #include "core/dynamics/settings.hpp"
 #include "core/dynamics/type_properties.hpp"
 #include "core/dynamics/wide_rows.hpp"
@@ -58,6 +59,12 @@ struct Islands {
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 
+/// Of the contacts of one piece of the list, for the step's report.
+struct ContactSums {
+    std::uint64_t contacts = 0;
+    double penetration = 0, sum = 0;  ///< deepest overlap and all overlaps [m]
+};
+
 /// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
 /// p <- max(0, keep p + mass (target - v)).
 struct NormalPass {
@@ -87,11 +94,13 @@ struct Simulation {
     StepMemory memory;
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
+    Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
 };
 
-/// What the stages of one step hand on. Nothing in it survives the step, its memory does.
+/// What the stages of one step hand on. Nothing in it survives the step, its memory does; where
+/// nothing turns the first step's rotors and angular velocities stay, which are all later ones'.
 struct StepData {
     double dt = 0;    ///< [s]
     double h = 0;     ///< length of a sub-step [s]
@@ -102,7 +111,7 @@ struct StepData {
     std::vector<Vec4> velocity;
     std::vector<Bivector> angular_velocity;
 
-    /// World, in the middle of the sub-step, of the bodies that are not isotropic.
+    /// World, in the middle of the sub-step, of the bodies that are not isotropic and awake.
     std::vector<BivectorMap> inverse_inertia;
 
     std::vector<Bounds> bounds;     ///< of every body
@@ -116,6 +125,7 @@ struct StepData {
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
     std::vector<double> residual;          ///< of every island [m/s]
     std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
+    std::vector<ContactSums> sums;         ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
     std::vector<ContactImpulse> merged_impulses;

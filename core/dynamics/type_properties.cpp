@@ -35,7 +35,8 @@ TypeProperties properties_of(const BodyType& type) {
     p.movable = !(type.fixed_position && type.fixed_rotation);
     p.falls = !type.fixed_position;
     if (!type.fixed_position) p.inverse_mass = 1 / type.mass;
-    if (!type.fixed_rotation) p.inverse_inertia = inverse(p.inertia);
+    const bool slips_round = p.arm == 0 && type.friction == 0;
+    if (!type.fixed_rotation && !slips_round) p.inverse_inertia = inverse(p.inertia);
     const double first = p.inverse_inertia.xy;
     p.isotropic = p.inverse_inertia == Bivector{first, first, first, first, first, first};
     return p;

@@ -11,7 +11,9 @@ struct TypeProperties {
     double mass = 0;           ///< [kg]; 0 if unbounded
     double inverse_mass = 0;   ///< [1/kg]; 0 if the position is fixed
     Bivector inertia;          ///< body frame, diagonal: I_ij = J_i + J_j [kg m^2]
-    Bivector inverse_inertia;  ///< the inverse of each; 0 if the rotation is fixed
+    Bivector inverse_inertia;  ///< the inverse of each, as contacts see it; 0 if the rotation is
+                               ///< fixed, and of a hypersphere without friction, which no contact
+                               ///< turns: normals go through its centre
     bool isotropic = true;     ///< all six inverses are equal
     bool bounded = false;
     bool movable = false;  ///< contacts can change its motion

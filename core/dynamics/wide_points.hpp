@@ -30,8 +30,7 @@ inline void put_point(const WideStage& stage, std::uint32_t index, std::size_t l
     const Contact& c = step.contacts[index];
     const ContactImpulse& impulse = step.impulses[index];
     const Vec4 r_a = c.point - step.position[c.a], r_b = c.point - step.position[c.b];
-    const Vec4 v = step.velocity[c.b] + velocity_at(step.angular_velocity[c.b], r_b) -
-                   step.velocity[c.a] - velocity_at(step.angular_velocity[c.a], r_a);
+    const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
     const ContactTargets targets = targets_of(simulation, step, c, along);
     put(c.normal, points.normal[lane]);

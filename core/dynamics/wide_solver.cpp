@@ -52,6 +52,7 @@ void add_changes(const WideStage& stage, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = step.wide.bodies[i];
         step.velocity[id] += velocity_change(step.wide.changes[i]);
+        if (!stage.simulation.needs.turning) continue;
         step.angular_velocity[id] += angular_change(step.wide.changes[i]);
         if (!step.wide.angular_velocity.empty())
             step.wide.angular_velocity[i] = step.angular_velocity[id];
@@ -63,12 +64,13 @@ void take_changes_back(const WideStage& stage, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = step.wide.bodies[i];
         BodyChange& change = step.wide.changes[i];
+        step.velocity[id] -= velocity_change(change);
+        if (!stage.simulation.needs.turning) continue;
         const Bivector turned = step.angular_velocity[id] - step.wide.angular_velocity[i];
         const Bivector all = angular_change(change) + turned;
         change.first_planes = {static_cast<float>(all.xy), static_cast<float>(all.xz),
                                static_cast<float>(all.xw), static_cast<float>(all.yz)};
         change.rest[0] = static_cast<float>(all.yw), change.rest[1] = static_cast<float>(all.zw);
-        step.velocity[id] -= velocity_change(change);
         step.angular_velocity[id] = step.angular_velocity[id] - angular_change(change);
     }
 }

@@ -42,7 +42,7 @@ void World::find_contacts() {
     for (bool look = true; look;) {
         step_.contacts.clear();
         tesserae::find_contacts(simulation_, step_, {0, step_.pairs.size()}, step_.contacts);
-        look = wake_touched(step_);
+        look = wake_touched(simulation_, step_);
         if (look) tesserae::find_pairs(simulation_, step_);
     }
     begin_contacts(step_);
@@ -74,6 +74,8 @@ void World::relax_islands() {
 
 StepReport World::finish_step() {
     require_finite(simulation_, step_);
+    begin_report(step_);
+    sum_contacts(step_, {0, step_.contacts.size()});
     return commit_step(simulation_, step_);
 }
 

@@ -73,6 +73,26 @@ TEST(ParallelWorld, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
         << first_difference(towers(), {}, kStep, 150, threads);
 }
 
+TEST(ParallelWorld, ReportsTheBitsOfTheSerialWorld) {
+    // Without a fall: every sphere overlaps its neighbours, in several pieces of contacts.
+    Bodies bodies = heap_of_spheres(1200, 8);
+    for (BodyId id = 7; id < bodies.size(); ++id) bodies.position[id] *= 0.6;
+    World serial(bodies, PhysicsSettings{});
+    Threads threads(3);
+    ParallelWorld world(bodies, PhysicsSettings{});
+    threads.run([&] {
+        for (int i = 0; i < 3; ++i) {
+            const StepReport p = serial.step(kStep), q = world.step(kStep);
+            EXPECT_GT(p.contacts, 2 * kReportPiece);
+            EXPECT_GT(p.mean_penetration, 0);
+            EXPECT_EQ(p.contacts, q.contacts);
+            EXPECT_EQ(p.penetration, q.penetration);
+            EXPECT_EQ(p.mean_penetration, q.mean_penetration);
+            EXPECT_EQ(p.residual, q.residual);
+        }
+    });
+}
+
 TEST(ParallelWorld, ContinuesASerialRun) {
     World serial(towers(), PhysicsSettings{});
     for (int i = 0; i < 40; ++i) serial.step(kStep);

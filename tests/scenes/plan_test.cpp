@@ -63,11 +63,29 @@ TEST(Plan, LeavesOutOfAStepWhatNoBodyHas) {
     EXPECT_FALSE(needed(smooth, "restitution"));
     EXPECT_TRUE(needed(smooth + body(sphere + "restitution = 0.1"), "restitution"));
 
+    // The larger restitution of a pair counts, and the geometric mean of its frictions.
+    const std::string wall = "shape = \"hyperplane\"\nnormal = [1, 0, 0, 0]\n";
+    EXPECT_TRUE(needed(smooth + body(wall + "restitution = 0.1"), "restitution"));
+    EXPECT_FALSE(needed(smooth + body(wall + "friction = 0.1"), "friction"));
+
+    const std::string rotors = "rotors and angular velocities";
+    EXPECT_FALSE(needed(smooth, rotors));
+    EXPECT_TRUE(needed(smooth + body(sphere), rotors)) << "friction is 0.5 by default";
+    EXPECT_TRUE(needed(body(sphere + "friction = 0\nangular_velocity = { xw = 1 }"), rotors));
+
     const std::string inertia = "gyroscopic term and 6x6 inertia";
     EXPECT_FALSE(needed(smooth + body(box("[1, 1, 1, 1]")), inertia));
     EXPECT_TRUE(needed(smooth + body(box("[1, 2, 1, 1]")), inertia));
     const std::string held = "fixed = [\"position\", \"rotation\"]\n";
     EXPECT_FALSE(needed(smooth + body(box("[1, 2, 1, 1]") + held), inertia));
+    EXPECT_FALSE(needed(body(sphere) + body(box("[1, 2, 1, 1]") + held), inertia));
+    EXPECT_FALSE(needed(smooth + body(box("[1, 2, 1, 1]") + held), rotors));
+
+    const auto mass = [&](const char* kilograms) {
+        return body(sphere + "mass = " + kilograms + "\n");
+    };
+    EXPECT_TRUE(needed(mass("1e9") + mass("1e-9"), "islands in colours"));
+    EXPECT_FALSE(needed(mass("1e9") + mass("1e-10"), "islands in colours")) << "beyond 2^60";
 
     const auto physics = [](const std::string& bodies) {
         return decision_of("[physics]\n" + bodies, {}, "physics");

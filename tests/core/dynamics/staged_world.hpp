@@ -56,6 +56,8 @@ class StagedWorld {
             relax();
         }
         require_finite(simulation, step);
+        begin_report(step);
+        sum_contacts(step, {0, step.contacts.size()});
         step.substep = 0;
         return commit_step(simulation, step);
     }
