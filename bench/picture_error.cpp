@@ -215,8 +215,8 @@ void measure_sampler() {
 void measure_penumbra(double angle) {
     Scene scene;
     scene.add_body(Hypersphere{0.5}, {0, 1.2, 0, 0.6});
-    scene.camera.position = {0, 4, -3, 0}, scene.camera.look_at = {0.6, 0, 0.3, 0};
-    scene.camera.field_of_view = 45;
+    scene.camera.position = {0, 4, -3, 0}, scene.camera.look_at = {0.6, 0, 0.24, 0};
+    scene.camera.field_of_view = 28;
     scene.settings.bounces = 0;
     scene.lights.suns = {{Vec4(0.5, -1, 0.2, -0.4).normalized(), Color::Constant(4), angle}};
     Scene path = scene;

@@ -19,7 +19,7 @@ from report_accuracy import save, write_csv
 
 # Errors below this [m] are rounding: no slope is fitted to them, and no less is drawn.
 ROUNDING = 1e-14
-# (experiment, what the value is, what the error is, slopes of the error over the value?)
+# (experiment, what the value is, what the error is)
 EXPERIMENTS = (
     ("samples", "samples", "RMS error against the own converged picture / mean"),
     ("sampler", "samples", "RMS error against the converged picture / mean"),
@@ -28,8 +28,9 @@ EXPERIMENTS = (
 
 
 def slope(x, y):
-    """Exponent p of y = c x^p by least squares on logarithms; empty without three points."""
-    if len(x) < 3 or max(x) < 1.2 * min(x):
+    """Exponent p of y = c x^p by least squares on logarithms; empty without three points, or where
+    x changes too little to say."""
+    if len(x) < 3 or max(x) < 3 * min(x):
         return ""
     return f"{np.polyfit(np.log(x), np.log(y), 1)[0]:.2f}"
 
@@ -60,9 +61,9 @@ def main():
             for axes, x, fitted in zip(both, (time, value), (over_time, over_value)):
                 axes.loglog(x, np.maximum(error, ROUNDING / 10),
                             label=f"{way}: {fitted}" if fitted else way, **style)
-        for axes, name in zip(both, ("time [ns]", value_name)):
-            axes.set_xlabel(name + (" of a pixel" if name[0:4] == "time" and "samp" in experiment
-                                    else " of a ray" if name[0:4] == "time" else ""))
+        unit = "pixel" if value_name == "samples" else "ray"
+        for axes, name in zip(both, (f"processor time of a {unit} [ns]", value_name)):
+            axes.set_xlabel(name)
             axes.grid(True, which="major", lw=0.3)
             axes.legend(fontsize=8, title="slope, fitted", title_fontsize=8)
         both[0].set_ylabel(error_name)

@@ -21,6 +21,7 @@ using namespace render;
 constexpr int kRays = 20'000;
 constexpr double kDistance = 8;  ///< of the rays' origins from the body's centre [m]
 constexpr int kRepeats = 3;
+constexpr int kMostPlainSteps = 20'000;
 constexpr int kMaxSteps = 200;                ///< the scene format's default
 constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/intersect.cpp
 constexpr std::array<int, 9> kSteps = {1, 2, 3, 4, 6, 8, 16, 64, 200};
@@ -86,7 +87,7 @@ double traced(const S& shape, const Ray& ray, double radius, double tolerance, b
         end += kRendererTolerance * end;
     }
     const double scale = ray.origin.norm();
-    for (int step = 0; step < kMaxSteps; ++step) {
+    for (int step = 0; step < (is_plain ? kMostPlainSteps : kMaxSteps); ++step) {
         const Vec4 point = ray.origin + t * ray.direction;
         const double distance = signed_distance(shape, point);
         ++stats.distance_evaluations;
@@ -149,7 +150,9 @@ bool measure(const Shape& shape) {
     bool is_same = true;
     std::visit(
         [&](const auto& s) {
-            for (const bool is_plain : {false, true})
+            for (const bool is_plain : {false, true}) {
+                // Toward a plane a grazing ray's plain steps grow too slowly to arrive.
+                if (is_plain && !s.kBounded) continue;
                 for (const int power : {2, 3, 4, 6, 8, 10, 12, 13, 14}) {
                     const double tolerance = std::pow(10, -power);
                     const auto found = row(target, "tolerance", name + (is_plain ? " plain" : ""),
@@ -159,6 +162,7 @@ bool measure(const Shape& shape) {
                                            });
                     if (power == 13 && !is_plain) is_same = found == renderers;
                 }
+            }
         },
         shape);
     return is_same;
