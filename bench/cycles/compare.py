@@ -53,7 +53,8 @@ def processor_time(who):
 class Tesserae:
     def __init__(self, program, folder, still_name, intersector):
         self.name, self.way, self.still = "tesserae", intersector, still_name
-        self.raw, self.program, self.folder = folder, program, f"{folder}/{still_name}_{intersector}"
+        self.raw, self.program = folder, program
+        self.folder = f"{folder}/{still_name}_{intersector}"
         os.makedirs(self.folder, exist_ok=True)
         for is_turned in (False, True):
             with open(f"{self.folder}/still{int(is_turned)}.toml", "w") as file:
@@ -132,8 +133,8 @@ def main():
                  Cycles(folder, "PROGRESSIVE_MULTI_JITTER"), Cycles(folder, "SOBOL")]
     points = measure(renderers)
     with open(f"{folder}/cycles.csv", "w") as file:
-        print("renderer,way,still,samples,relative_rmse,seconds,ns_per_sample,over_alone,over_among",
-              file=file)
+        print("renderer,way,still,samples,relative_rmse,seconds,ns_per_sample,over_alone,"
+              "over_among", file=file)
         for (renderer, samples), (error, seconds) in points.items():
             ratios = [seconds / time_at(error, [points[our, n] for n in SAMPLES]) for our in ours]
             per_sample = seconds / (SIZE[0] * SIZE[1] * samples)

@@ -1,8 +1,9 @@
 """The still that both renderers draw: balls on a plane under a soft sun and an even sky.
 
 Ours are hyperspheres of which the slice w = 0 cuts balls of `radius`; Cycles gets these balls. An
-open surface shows the same light in both: a sun of irradiance E is reflected as 3 albedo E cos/(4 pi)
-in four dimensions and albedo E cos/pi in three, so ours has 4/3 of the irradiance.
+open surface shows the same light in both: a sun of irradiance E is reflected as
+3 albedo E cos/(4 pi) in four dimensions and albedo E cos/pi in three, so ours has 4/3 of the
+irradiance.
 
 A ray that is scattered in 4D leaves the slice, and beside it there is nothing but sky: so our paths
 are shorter. That is made up for in the still `among`, where hyperspheres beside the slice, seen by
@@ -69,6 +70,7 @@ def toml(is_turned, intersector, is_among):
     def vector(v, *more):
         return "[" + ", ".join(f"{x:.17g}" for x in (*v, *more)) + "]"
 
+    bodies = balls() + (others() if is_among else [])
     parts = [
         f"[camera]\nposition = {vector(POSITION, 0)}\nlook_at = {vector(LOOK_AT, 0)}\n"
         f"up = [0, {-1 if is_turned else 1}, 0, 0]\nfield_of_view = {FIELD_OF_VIEW}",
@@ -81,5 +83,5 @@ def toml(is_turned, intersector, is_among):
           for i, a in enumerate((*ALBEDOS, FLOOR))),
         f'[[body]]\nshape = "hyperplane"\nnormal = [0, 1, 0, 0]\nmaterial = "m{len(ALBEDOS)}"',
         *(f'[[body]]\nshape = "hypersphere"\nradius = {b.hyper_radius:.17g}\n'
-          f'position = {vector(b[:4])}\nmaterial = "m{b.material}"' for b in (*balls(), *(others() if is_among else ())))]
+          f'position = {vector(b[:4])}\nmaterial = "m{b.material}"' for b in bodies)]
     return "\n\n".join(parts) + "\n"
