@@ -8,16 +8,21 @@
 #   bash bench/run.sh rays         view, shadow and bounce rays
 #   bash bench/run.sh extremes     stiff and extreme scenes
 #   bash bench/run.sh light        error of the traced light against samples, a minute
+#   bash bench/run.sh picture      error of pictures against time, 4 minutes
+#   bash bench/run.sh cycles       a still beside Blender's Cycles (installs it), 5 minutes; not one of all parts
+#   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, a quarter of an hour
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, ten minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-parts=(accuracy speed leave-out rays extremes light bullet peers scaling)
+all=(accuracy speed leave-out rays extremes light picture bullet peers scaling)
+on_demand=(cycles large scaling-million)
+parts=("${all[@]}")
 if [ $# != 0 ]; then
-    case $1 in accuracy | speed | leave-out | rays | extremes | light | bullet | peers | scaling | scaling-million) parts=("$1") ;; *)
-        echo "usage: bash bench/run.sh [accuracy | speed | leave-out | rays | extremes | light | bullet | peers | scaling | scaling-million]" >&2
+    case " ${all[*]} ${on_demand[*]} " in *" $1 "*) parts=("$1") ;; *)
+        echo "usage: bash bench/run.sh [$(IFS='|'; echo "${all[*]}|${on_demand[*]}")]" >&2
         exit 2
         ;;
     esac
@@ -86,6 +91,48 @@ light() {
     "$folder/bench/light_error" >"$raw/light_error.csv"
     head_of light "$1"
     cat "$raw/head.txt" "$raw/light_error.csv" >"$results/light_error.csv"
+}
+
+picture() {
+    { "$folder/bench/picture_error" && "$folder/bench/traced_rays"; } |
+        awk 'NR == 1 || !/^experiment,/' >"$raw/picture_error.csv"
+    head_of picture "$1"
+    /usr/bin/python3 -B "$root/bench/report_picture.py" "$raw/head.txt" "$raw/picture_error.csv" "$results"
+}
+
+cycles() {
+    install_packages blender
+    build "$folder" tesserae
+    rm -rf "$raw/cycles"
+    mkdir -p "$raw/cycles"
+    blender -b --factory-startup -noaudio --python-exit-code 1 --python "$root/bench/cycles/compare.py" \
+        -- "$folder/tesserae" "$raw/cycles" >"$raw/cycles.log"
+    head_of cycles "$1"
+    echo "# $(blender --version | head -1), Debian's package" >>"$raw/head.txt"
+    /usr/bin/python3 -B "$root/bench/cycles/report.py" "$raw/head.txt" "$raw/cycles" "$results"
+}
+
+# The largest memory and the time of a tiny frame, and of large ones whose files are not kept.
+large() {
+    local scene=$root/scenes/gallery/first.toml size tile time_file=$raw/time.txt
+    install_packages time
+    build "$folder" tesserae
+    "$folder/tesserae" simulate "$scene" -o "$raw/first.h5" --quiet
+    echo "size,tile,resident_mb,wall_s,processor_s,file_mb" >"$raw/large.csv"
+    for size in 64x36 15360x8640; do
+        for tile in 32 512; do
+            rm -rf "$raw/large"
+            /usr/bin/time -f "%M %e %U %S" -o "$time_file" "$folder/tesserae" render "$scene" --quiet \
+                --trajectory "$raw/first.h5" --frames 30 --samples 1 --size "$size" \
+                --set "render.tile=$tile" -o "$raw/large"
+            awk -v size="$size" -v tile="$tile" -v bytes="$(stat -c %s "$raw/large/frames/"*.exr)" \
+                '{printf "%s,%d,%.1f,%.1f,%.1f,%.1f\n", size, tile, $1 / 1000, $2, $3 + $4, bytes / 1e6}' \
+                "$time_file" >>"$raw/large.csv"
+        done
+    done
+    rm -rf "$raw/large" "$raw/first.h5"
+    head_of large "$1"
+    cat "$raw/head.txt" "$raw/large.csv" >"$results/large_frame.csv"
 }
 
 bullet() {
