@@ -12,6 +12,9 @@ namespace {
 /// A sun smaller than this [rad] is hard: nobody sees the difference, and the radiance of its disc,
 /// which grows with the cube, would leave the range of double.
 constexpr double kHard = 1e-9;
+/// Bodies that a walk meets before its cone narrows. To begin anew with a narrower cone costs the
+/// walk about two boxes' tests: too much where it soon ends, as in a small sun's cone.
+constexpr int kBeforeNarrowing = 4;
 
 }  // namespace
 
@@ -71,14 +74,14 @@ double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint3
     // The cone that can still matter narrows to the nearest rim found.
     double least = light.cone.sine;
     Cone cone = light.cone;
+    int bodies = 0;
     const auto narrow = [&](std::uint32_t body) {
         if (body == on || is_behind(light, point, body)) return true;
         const double sine = rim_sine(placed_, body, point, light.toward,
                                      {-light.cone.sine, least, light.limit}, stats);
-        if (sine < least) {
-            least = sine;
-            cone = {sine, std::sqrt(std::max(0.0, 1 - sine * sine))};
-        }
+        least = std::min(least, sine);
+        if (++bodies >= kBeforeNarrowing && least < cone.sine)
+            cone = {least, std::sqrt(std::max(0.0, 1 - least * least))};
         return least > -light.cone.sine;
     };
     for (std::uint32_t body : tree_.unbounded())
