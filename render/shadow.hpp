@@ -22,19 +22,9 @@ struct SunDisc : LightDisc {
 };
 SunDisc sun_disc(const Sun& sun);
 
-/// The sine of the angle by which a ray misses a body: between the ray's direction and the nearest
-/// direction from `origin` that touches the body, negative when the ray enters it, -1 from inside,
-/// 1 where the body lies behind. It is the least f(t)/t over t > 0, f(t) being the body's signed
-/// distance along the ray, and exact for every convex body the ray misses (for a hypersphere it is
-/// sin(theta - alpha) on both sides; FORMULAS 7).
-/// @param cone   which values matter: the result has the right value within +-cone.sine (to 1e-6 of
-///               it), and beyond only the right side of it. With angle 0 only the sign matters
-/// @param limit  only what comes before this distance along the ray counts [m]: the least f(t)/t
-///               over 0 < t <= limit
-/// @param most   nor do values from here on matter: the result is then anything that is no less
+/// The rim of a body as a point sees it along a ray: Rim::sine, in world axes.
 double rim_sine(const PlacedBodies& placed, std::uint32_t body, const Vec4& origin,
-                const Vec4& direction, const Cone& cone, double limit, FrameStats& stats,
-                double most = 1);
+                const Vec4& direction, const RimRange& range, FrameStats& stats);
 
 /// The part of a light's disc that lies beyond a flat rim at angle x * half-angle from its middle,
 /// x in [-1, 1] (0 hidden, 1 clear). The disc is a 3-ball of directions, and a plane cuts

@@ -109,4 +109,40 @@ double ray_exit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direc
     return ray_exit(ball, origin - end, direction);
 }
 
+/// Seen along the axis the capsule is a ball, of which the ray's shadow meets the least ratio
+/// somewhere: f(t)/t of the unending wall, by the shadow's length shorter. If that is beside the
+/// core it is the capsule's, else the end on whose side it lies has the least: as a function of 1/t
+/// and the core's point over t, the ratio is convex.
+Rim rim(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction,
+        const RimRange& range) {
+    const double r = shape.radius, half = 0.5 * shape.height;
+    const double unit = std::max({origin.cwiseAbs().maxCoeff(), r, half});
+    if (!(unit > 1e-100 && unit < 1e100))
+        return rim(Hypercapsule{r / unit, shape.height / unit}, origin / unit, direction,
+                   {range.low, range.high, range.limit / unit});
+    const double distance = signed_distance(shape, origin);
+    if (distance <= 0)
+        return rim_from_inside(distance, normal(shape, origin).dot(direction), r + half);
+
+    BallRim least = {1, kMiss};
+    double height = origin[1];
+    const Vec4 beside = across(origin);
+    const double square = beside.squaredNorm();
+    if (square > r * r) {
+        const double sine = across(direction).norm();
+        if (sine > 0) {
+            least = ball_rim(r, beside, square, across(direction) / sine);
+            least = {least.sine * sine, least.distance / sine};
+        }
+        height = direction[1] == 0 ? origin[1] : origin[1] + least.distance * direction[1];
+    }
+    if (!(square > r * r && std::abs(height) <= half)) {
+        const Vec4 from_end = origin - (height > 0 ? half : -half) * Vec4::UnitY();
+        least = ball_rim(r, from_end, from_end.squaredNorm(), direction);
+    }
+    if (range.limit < least.distance)
+        return {signed_distance(shape, origin + range.limit * direction) / range.limit};
+    return {least.sine};
+}
+
 }  // namespace tesserae

@@ -31,5 +31,7 @@ double signed_distance(const Hypercapsule& shape, const Vec4& point);
 Vec4 normal(const Hypercapsule& shape, const Vec4& point);
 double ray_hit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction);
 double ray_exit(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction);
+Rim rim(const Hypercapsule& shape, const Vec4& origin, const Vec4& direction,
+        const RimRange& range);
 
 }  // namespace tesserae

@@ -45,4 +45,12 @@ double ray_exit(const Hyperplane& shape, const Vec4& origin, const Vec4& directi
     return std::max(0.0, -signed_distance(shape, origin) / away);
 }
 
+/// f is linear, and f/t falls toward its slope.
+Rim rim(const Hyperplane& shape, const Vec4& origin, const Vec4& direction, const RimRange& range) {
+    const double distance = signed_distance(shape, origin);
+    const double slope = shape.normal.dot(direction);
+    if (distance <= 0) return rim_from_inside(distance, slope, stable_norm(origin));
+    return {slope + distance / range.limit};
+}
+
 }  // namespace tesserae

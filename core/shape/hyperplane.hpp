@@ -33,5 +33,6 @@ double signed_distance(const Hyperplane& shape, const Vec4& point);
 Vec4 normal(const Hyperplane& shape, const Vec4& point);
 double ray_hit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);
 double ray_exit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);
+Rim rim(const Hyperplane& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
 
 }  // namespace tesserae

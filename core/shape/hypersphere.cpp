@@ -69,4 +69,35 @@ double ray_exit(const Hypersphere& shape, const Vec4& origin, const Vec4& direct
     return std::max(0.0, (r - distance) * ((r + distance) / (half_chord - nearest)));
 }
 
+/// With D the centre's distance, theta the angle to it and alpha that to the rim: sin(theta -
+/// alpha), at t = D cos(alpha)/cos(theta - alpha).
+BallRim ball_rim(double radius, const Vec4& origin, double square, const Vec4& direction) {
+    // Cosines and sines of theta and alpha, times D.
+    const double cos_theta = -origin.dot(direction);
+    const double sin_theta = (origin + cos_theta * direction).norm();
+    const double cos_alpha = std::sqrt(square - radius * radius);
+    const double cos_between = cos_theta * cos_alpha + sin_theta * radius;
+    if (!(cos_between > 0)) return {1, kMiss};
+    return {(sin_theta * cos_alpha - cos_theta * radius) / square,
+            square / cos_between * cos_alpha};
+}
+
+Rim rim(const Hypersphere& shape, const Vec4& origin, const Vec4& direction,
+        const RimRange& range) {
+    const double square = origin.squaredNorm(), r = shape.radius;
+    if (!is_plain_square(square + r * r)) {
+        const double unit = std::max(origin.cwiseAbs().maxCoeff(), r);
+        return rim(Hypersphere{r / unit}, origin / unit, direction,
+                   {range.low, range.high, range.limit / unit});
+    }
+    if (square <= r * r) {
+        const double distance = std::sqrt(square);
+        return rim_from_inside(distance - r, direction.dot(origin) / distance, r);
+    }
+    const BallRim least = ball_rim(r, origin, square, direction);
+    if (range.limit < least.distance)
+        return {((origin + range.limit * direction).norm() - r) / range.limit};
+    return {least.sine};
+}
+
 }  // namespace tesserae

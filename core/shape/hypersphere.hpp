@@ -29,5 +29,14 @@ double signed_distance(const Hypersphere& shape, const Vec4& point);
 Vec4 normal(const Hypersphere& shape, const Vec4& point);
 double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
 double ray_exit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
+Rim rim(const Hypersphere& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
+
+/// Where along a ray from outside the rim's least f(t)/t is met, and that ratio: 1 at infinity
+/// where the ball lies behind.
+struct BallRim {
+    double sine, distance;
+};
+/// @param square   |origin|^2, at least radius^2; a plain square
+BallRim ball_rim(double radius, const Vec4& origin, double square, const Vec4& direction);
 
 }  // namespace tesserae
