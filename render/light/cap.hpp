@@ -37,8 +37,7 @@ double cap_solid_angle(double angle);
 
 /// A direction of the cap around the last axis, uniform in solid angle, to a few roundings of its
 /// coordinates. The angle from the axis has density 4 pi sin^2; its distribution is inverted by
-/// Newton's method, which falls monotonically from the cube-root start as long as the function is
-/// convex: `angle` 0 to pi/2.
+/// a series and Halley's method: `angle` 0 to pi/2.
 Vec4 cap_direction(double angle, const Uniform3& u);
 
 /// Irradiance under a cap of radiance 1: its projection onto the surface.
