@@ -77,8 +77,7 @@ class Rays {
             directions_.push_back(
                 Vec4(-0.7 + 1.4 * (i % 16) / 15, -1, -0.7 + 1.4 * (i / 16) / 15, 0).normalized());
         for (const Vec4& d : directions_) {
-            const auto hit =
-                scene_.nearest(Vec4::Zero(), d, kMiss, render::RayScene::kNoBody, stats_);
+            const auto hit = scene_.nearest({Vec4::Zero(), d}, stats_);
             surfaces_.push_back(hit ? std::optional(shading_.surface(hit, Vec4::Zero(), d))
                                     : std::nullopt);
         }
@@ -88,7 +87,11 @@ class Rays {
     double sample(int ray, int x, int y, int index) {
         const auto i = static_cast<std::size_t>(ray);
         const render::Sampler sampler(x, y, static_cast<std::uint32_t>(index));
-        return transport_.radiance(surfaces_[i], Vec4::Zero(), directions_[i], sampler, stats_)[0];
+        const render::LightTransport::Start start = {surfaces_[i] ? &*surfaces_[i] : nullptr,
+                                                     Vec4::Zero(), directions_[i], sampler};
+        render::Color color;
+        transport_.radiance({&start, 1}, {&color, 1}, stats_);
+        return color[0];
     }
 
     /// The mean of a pixel's samples, or of the first samples of as many pixels: independent ones.

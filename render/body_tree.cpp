@@ -18,6 +18,9 @@ constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 /// Part of a body's coordinates and size by which its bounds are widened: three times the rounding
 /// of a double to a float, and a million times what any hit is out by.
 constexpr double kWiden = 2e-7;
+/// No slope is less than this: it keeps the inverse finite, and a ray leaves its place by less than
+/// the bounds' widening.
+constexpr double kLeast = 1e-18;
 
 struct Box {
     Four low = Four::Constant(kInfinite), high = Four::Constant(-kInfinite);
@@ -138,6 +141,7 @@ class BodyTreeBuilder {
     }
 
     void build() {
+        TSR_ASSERT(members_.size() <= BodyTree::kMostBodies);
         if (members_.empty()) return;
         Branch root;
         root.part = {0, members_.size(), {}};
@@ -280,7 +284,6 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
         }
     }
     const std::size_t index = tree_.nodes_.size();
-    TSR_ASSERT(index <= std::numeric_limits<std::uint32_t>::max());
     tree_.nodes_.push_back(node);
     for (std::size_t i = 0; i < children.size(); ++i) {
         const Branch& child = *children[i];
@@ -306,20 +309,49 @@ std::uint32_t BodyTreeBuilder::add_leaf(const Part& part) {
 
 BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).build(); }
 
-BodyTree::Ray BodyTree::ray_of(const Vec4& origin, const Vec4& direction, const Cone& cone) {
-    // No slope is less than this: it keeps the inverse finite, and a ray leaves its place by less
-    // than the bounds' widening.
-    constexpr double kLeast = 1e-18;
+BodyTree::Line BodyTree::line_of(const Vec4& origin, const Vec4& direction) {
+    // All four axes at once, and no branch: which side is first is a toss.
+    using Doubles = double __attribute__((vector_size(4 * sizeof(double))));
+    using Floats = float __attribute__((vector_size(4 * sizeof(float))));
+    Doubles o, d;
+    std::memcpy(&o, origin.data(), sizeof o);
+    std::memcpy(&d, direction.data(), sizeof d);
+    const Doubles least = {kLeast, kLeast, kLeast, kLeast};
+    const auto is_forward = d > -least;
+    const Doubles inverse = 1 / (is_forward ? (d > least ? d : least) : d);
+    const double slack = kWiden * origin.lpNorm<1>();
+    const Doubles shift = -o * inverse, widening = slack * (is_forward ? inverse : -inverse);
+    Line line;
+    const auto write = [](const Doubles& v, std::array<float, 4>& to) {
+        const Floats floats = __builtin_convertvector(v, Floats);
+        std::memcpy(to.data(), &floats, sizeof floats);
+    };
+    write(o, line.origin);
+    write(d, line.direction);
+    write(inverse, line.inverse);
+    write(shift - widening, line.enter_shift);
+    write(shift + widening, line.leave_shift);
+    constexpr std::int64_t kSize = sizeof(Lanes);
+    using Offsets = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
+    const auto offsets =
+        (is_forward ? 0 : kSize) + decltype(is_forward){0, 2 * kSize, 4 * kSize, 6 * kSize};
+    const Offsets sides = __builtin_convertvector(offsets, Offsets);
+    std::memcpy(line.enter_side.data(), &sides, sizeof sides);
+    line.slack = static_cast<float>(10 * slack);
+    return line;
+}
+
+BodyTree::Flare BodyTree::flare_of(const Vec4& origin, const Vec4& direction, const Cone& cone) {
     const double slack = kWiden * origin.lpNorm<1>();
     const double tangent = cone.sine > 0 ? (1 + kWiden) * cone.sine / cone.cosine : 0;
-    Ray ray;
+    Flare flare;
     for (std::size_t i = 0; i < 4; ++i) {
         const double o = origin[static_cast<int>(i)], d = direction[static_cast<int>(i)];
-        ray.origin[i] = static_cast<float>(o);
-        ray.direction[i] = static_cast<float>(d);
+        flare.origin[i] = static_cast<float>(o);
+        flare.direction[i] = static_cast<float>(d);
         const double least = d - tangent, most = d + tangent;
         const bool forward = least > -kLeast, backward = !forward && most < kLeast;
-        ray.opens[i] = !forward && !backward;
+        flare.opens[i] = !forward && !backward;
         // A point is beyond the low side from where o + t most reaches it, and before the high side
         // up to where o + t least does.
         const double to_low = 1 / (backward ? std::min(most, -kLeast) : std::max(most, kLeast));
@@ -330,14 +362,14 @@ BodyTree::Ray BodyTree::ray_of(const Vec4& origin, const Vec4& direction, const 
             return Side{which, static_cast<float>(inverse),
                         static_cast<float>(-o * inverse + widening * std::abs(inverse))};
         };
-        ray.enter[i] = backward ? side(1, to_high, -slack) : side(0, to_low, -slack);
-        ray.leave[i] =
-            backward ? side(0, to_low, slack) : side(1, to_high, ray.opens[i] ? -slack : slack);
+        flare.enter[i] = backward ? side(1, to_high, -slack) : side(0, to_low, -slack);
+        flare.leave[i] =
+            backward ? side(0, to_low, slack) : side(1, to_high, flare.opens[i] ? -slack : slack);
     }
-    ray.slack = static_cast<float>(10 * slack);
-    ray.sine = static_cast<float>(cone.sine);
-    ray.cosine = static_cast<float>(cone.cosine);
-    return ray;
+    flare.slack = static_cast<float>(10 * slack);
+    flare.sine = static_cast<float>(cone.sine);
+    flare.cosine = static_cast<float>(cone.cosine);
+    return flare;
 }
 
 std::uint64_t BodyTree::fingerprint() const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -18,6 +19,8 @@ struct Cone {
     double sine, cosine;  ///< of the half-angle, within +-90 degrees
 };
 
+class RayStream;
+
 /// A hierarchy of 4D boxes over all bounded bodies, eight children to a node, tested at once by
 /// wide arithmetic: for rays that leave the camera's hyperplane, so over whole bodies, not their
 /// slices. Leaves hold up to eight bodies by their bounding spheres, which in 4D are tighter than
@@ -26,6 +29,9 @@ struct Cone {
 /// is.
 class BodyTree {
   public:
+    /// RayStream puts a ray's number into the other four bits of a body's.
+    static constexpr std::size_t kMostBodies = (std::size_t{1} << 28) - 1;
+
     /// Built on the threads of the caller's task arena; the same bodies give the same tree on any
     /// number of them.
     explicit BodyTree(const PlacedBodies& placed);
@@ -53,6 +59,7 @@ class BodyTree {
 
   private:
     friend class BodyTreeBuilder;
+    friend class RayStream;
     /// The difference of squares in a sphere's test cancels: far away a sphere counts as wider, by
     /// 1/1000 of the distance at most, which is twice what the roundings can make of it.
     static constexpr float kSquareSlack = 1e-6f;
@@ -72,33 +79,40 @@ class BodyTree {
         std::array<std::uint32_t, kLanes> body;
     };
 
-    /// A side of a box, as a distance along a ray: coordinate * inverse + shift.
+    /// What the tests of one ray have in common. A side of a box, as a distance along the ray, is
+    /// coordinate * inverse + shift.
+    struct Line {
+        std::array<std::uint32_t, 4> enter_side;  ///< where in Boxes the first side is [bytes]
+        std::array<float, 4> inverse, enter_shift, leave_shift, origin, direction;
+        float slack;  ///< the origin's rounding
+    };
+    static Line line_of(const Vec4& origin, const Vec4& direction);
+    /// The same for a cone. A cone about d is, along every axis, no wider than rays of slopes
+    /// d - tan and d + tan.
     struct Side {
         std::size_t side;  ///< 0 low, 1 high
         float inverse, shift;
     };
-    /// What the tests of one ray or cone have in common. A cone about d is, along every axis, no
-    /// wider than rays of slopes d - tan and d + tan.
-    struct Ray {
+    struct Flare {
         std::array<float, 4> origin, direction;
         std::array<Side, 4> enter, leave;
-        /// A cone opens to both sides of this axis: it leaves no box there, and enters by both.
+        /// The cone opens to both sides of this axis: it leaves no box there, and enters by both.
         std::array<bool, 4> opens;
-        float slack;  ///< the origin's rounding
-        float sine, cosine;
+        float slack, sine, cosine;
     };
-    static Ray ray_of(const Vec4& origin, const Vec4& direction, const Cone& cone);
+    static Flare flare_of(const Vec4& apex, const Vec4& direction, const Cone& cone);
     /// Which boxes the ray, or cone, meets within the limit, and where it enters them.
-    template <bool kCone>
-    static std::uint32_t boxes_met(const Boxes& boxes, const Ray& ray, float limit, Lanes& enter);
+    static std::uint32_t boxes_met(const Boxes& boxes, const Line& line, float limit, Lanes& enter);
+    static std::uint32_t boxes_met(const Boxes& boxes, const Flare& cone, float limit,
+                                   Lanes& enter);
     /// Which spheres the ray meets within the limit.
-    static std::uint32_t balls_on_ray(const Leaf& leaf, const Ray& ray, float limit);
+    static std::uint32_t balls_on_ray(const Leaf& leaf, const Line& line, float limit);
     /// Which spheres the cone may meet.
-    static std::uint32_t balls_in_cone(const Leaf& leaf, const Ray& cone);
-    /// Calls visit(body) for the bodies of leaves that the ray meets and that test(leaf), a mask of
-    /// lanes, names; nodes come roughly nearest first. Ray and limit may change on the way. Ends
-    /// when visit returns false.
-    template <bool kCone, class Test, class Visit>
+    static std::uint32_t balls_in_cone(const Leaf& leaf, const Flare& cone);
+    /// Calls visit(body) for the bodies of leaves that the ray (Line or Flare) meets and that
+    /// test(leaf), a mask of lanes, names; nodes come roughly nearest first. Ray and limit may
+    /// change on the way. Ends when visit returns false.
+    template <class Ray, class Test, class Visit>
     void for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const;
 
     /// A limit as a float that is no smaller, or far: unused lanes are farther.
@@ -108,50 +122,70 @@ class BodyTree {
         return std::min(f < v ? f + f * 1.2e-7f : f, kFar);
     }
 
-    /// At most seven children wait at every level; the builder bounds the levels: 48 by cost, and
-    /// 32 more that halve.
-    static constexpr std::size_t kWaiting = (kLanes - 1) * 80 + kLanes;
+    /// Of nodes, at most: the builder makes 48 by cost, and 32 more that halve.
+    static constexpr std::size_t kLevels = 80;
+    /// At most seven children wait at every level.
+    static constexpr std::size_t kWaiting = (kLanes - 1) * kLevels + kLanes;
 
     std::vector<Node> nodes_;  ///< the root first; empty without bodies
     std::vector<Leaf> leaves_;
     std::vector<std::uint32_t> unbounded_;
 };
 
-template <bool kCone>
-std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Ray& ray, float limit, Lanes& enter) {
-    Lanes first = all_lanes(0), last = all_lanes(limit);
-    const auto distance = [&](std::size_t axis, const Side& side) {
-        return product_sum(boxes[axis][side.side], all_lanes(side.inverse), all_lanes(side.shift));
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, float limit,
+                                         Lanes& enter) {
+    const auto side = [&](std::size_t at) {
+        Lanes coordinates;
+        std::memcpy(&coordinates, reinterpret_cast<const std::byte*>(&boxes) + at,
+                    sizeof coordinates);
+        return coordinates;
     };
+    Lanes first = all_lanes(0), last = all_lanes(limit);
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        first = larger(distance(axis, ray.enter[axis]), first);
-        if (kCone && ray.opens[axis])
-            first = larger(distance(axis, ray.leave[axis]), first);
-        else
-            last = smaller(distance(axis, ray.leave[axis]), last);
+        const std::size_t near = line.enter_side[axis], far = near ^ sizeof(Lanes);
+        const Lanes inverse = all_lanes(line.inverse[axis]);
+        first = larger(product_sum(side(near), inverse, all_lanes(line.enter_shift[axis])), first);
+        last = smaller(product_sum(side(far), inverse, all_lanes(line.leave_shift[axis])), last);
     }
     enter = first;
     // Both are right to three roundings.
     return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Ray& ray, float limit) {
-    Lanes along = all_lanes(0), square = all_lanes(0);
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, float limit,
+                                         Lanes& enter) {
+    Lanes first = all_lanes(0), last = all_lanes(limit);
+    const auto distance = [&](std::size_t axis, const Side& side) {
+        return product_sum(boxes[axis][side.side], all_lanes(side.inverse), all_lanes(side.shift));
+    };
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        const Lanes v = leaf.centre[axis] - ray.origin[axis];
-        along = product_sum(v, all_lanes(ray.direction[axis]), along);
-        square = product_sum(v, v, square);
+        first = larger(distance(axis, cone.enter[axis]), first);
+        if (cone.opens[axis])
+            first = larger(distance(axis, cone.leave[axis]), first);
+        else
+            last = smaller(distance(axis, cone.leave[axis]), last);
     }
-    const Lanes radius = leaf.radius + ray.slack;
-    const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
-    const Lanes chord = product_sum(along, along, power);
-    const Lanes past = along - limit;
-    // The chord's middle lies back, and the origin outside; or beyond the limit, and its end too.
-    return not_above(all_lanes(0), chord) & not_above(all_lanes(0), larger(along, power)) &
-           (not_above(past, all_lanes(0)) | not_above(past * past, chord));
+    enter = first;
+    return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Ray& cone) {
+inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Line& line, float limit) {
+    Lanes along = all_lanes(0), square = all_lanes(0);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+        const Lanes v = leaf.centre[axis] - line.origin[axis];
+        along = product_sum(v, all_lanes(line.direction[axis]), along);
+        square = product_sum(v, v, square);
+    }
+    const Lanes radius = leaf.radius + line.slack;
+    const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
+    // Missed where the chord's middle lies back, and the origin outside; or where the middle is
+    // past the limit by more than half the chord: of that half, the square.
+    const Lanes past = larger(along - limit, all_lanes(0));
+    const Lanes half = product_sum(along, along, power);
+    return not_above(all_lanes(0), smaller(product_sum(-past, past, half), larger(along, power)));
+}
+
+inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Flare& cone) {
     Lanes along = all_lanes(0), square = all_lanes(0);
     for (std::size_t axis = 0; axis < 4; ++axis) {
         const Lanes v = leaf.centre[axis] - cone.origin[axis];
@@ -166,7 +200,7 @@ inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Ray& cone) 
            not_above(all_lanes(0), along + radius);
 }
 
-template <bool kCone, class Test, class Visit>
+template <class Ray, class Test, class Visit>
 void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const {
     if (nodes_.empty()) return;
     struct Waiting {
@@ -178,7 +212,7 @@ void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Vi
     for (Waiting next = {0, 0};;) {
         const Node& node = nodes_[next.node];
         Lanes enter;
-        const std::uint32_t met = boxes_met<kCone>(node.boxes, ray, limit, enter);
+        const std::uint32_t met = boxes_met(node.boxes, ray, limit, enter);
 
         // All leaves at once: most name no body, and tests that wait for nothing overlap.
         std::uint64_t named = 0;
@@ -221,10 +255,10 @@ void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Vi
 template <class Visit>
 void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const double& limit,
                                Visit&& visit) const {
-    const Ray ray = ray_of(origin, direction, {0, 1});
+    const Line line = line_of(origin, direction);
     float reach = rounded_up(limit);
-    for_each_body<false>(
-        ray, reach, [&](const Leaf& leaf) { return balls_on_ray(leaf, ray, reach); },
+    for_each_body(
+        line, reach, [&](const Leaf& leaf) { return balls_on_ray(leaf, line, reach); },
         [&](std::uint32_t body) {
             const bool goes_on = visit(body);
             reach = rounded_up(limit);
@@ -235,15 +269,15 @@ void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const 
 template <class Visit>
 void BodyTree::for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
                                 Visit&& visit) const {
-    Ray ray = ray_of(apex, direction, cone);
+    Flare flare = flare_of(apex, direction, cone);
     double sine = cone.sine;
     const float reach = rounded_up(kMiss);
-    for_each_body<true>(
-        ray, reach, [&](const Leaf& leaf) { return balls_in_cone(leaf, ray); },
+    for_each_body(
+        flare, reach, [&](const Leaf& leaf) { return balls_in_cone(leaf, flare); },
         [&](std::uint32_t body) {
             const bool goes_on = visit(body);
             if (cone.sine != sine) {
-                ray = ray_of(apex, direction, cone);
+                flare = flare_of(apex, direction, cone);
                 sine = cone.sine;
             }
             return goes_on;

@@ -111,7 +111,7 @@ struct Settings {
     int samples = 16;
     Integrator integrator = Integrator::kDirect;
     int bounces = 4;            ///< 0: emitted and direct light only
-    double clamp_indirect = 0;  ///< see LightTransport::radiance; 0 is none [radiance]
+    double clamp_indirect = 0;  ///< of a sample, see LightTransport::add; 0: no bound [radiance]
     Intersector intersector = Intersector::kTrace;
     int max_steps = 200;
     double max_distance = 200;  ///< along a view ray [m]

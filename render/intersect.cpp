@@ -57,24 +57,28 @@ double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Vec4&
                     const Vec4& direction, double limit, const Settings& settings,
                     FrameStats& stats) {
     const PlacedBody& body = placed.bodies[index];
-    const Vec4 o = placed.point_to_body(body, origin);
-    const Vec4 d = placed.direction_to_body(body, direction);
-    return std::visit(
-        [&](const auto& shape) {
-            if (settings.intersector == Intersector::kAnalytic) {
-                const double t = ray_hit(shape, o, d);
-                return t <= limit ? t : kMiss;
-            }
-            double start = 0, end = limit;
-            if constexpr (std::decay_t<decltype(shape)>::kBounded) {
-                const Interval inside = inside_sphere(o, d, body.radius);
-                start = std::max(start, inside.start);
-                end = std::min(end, inside.end + kOnSurface * inside.end);
-                if (start > end) return kMiss;
-            }
-            return trace(shape, o, d, start, end, settings.max_steps, stats);
-        },
-        *body.shape);
+    const auto in_frame = [&](const Vec4& o, const Vec4& d) {
+        return std::visit(
+            [&](const auto& shape) {
+                if (settings.intersector == Intersector::kAnalytic) {
+                    const double t = ray_hit(shape, o, d);
+                    return t <= limit ? t : kMiss;
+                }
+                double start = 0, end = limit;
+                if constexpr (std::decay_t<decltype(shape)>::kBounded) {
+                    const Interval inside = inside_sphere(o, d, body.radius);
+                    start = std::max(start, inside.start);
+                    end = std::min(end, inside.end + kOnSurface * inside.end);
+                    if (start > end) return kMiss;
+                }
+                return trace(shape, o, d, start, end, settings.max_steps, stats);
+            },
+            *body.shape);
+    };
+    // Two calls: a choice of vectors would be copied by halves, and reading them back stalls.
+    if (body.turn == PlacedBody::kNotTurned) return in_frame(origin - body.centre, direction);
+    const Mat4& turn = placed.turns[body.turn];
+    return in_frame(turn * (origin - body.centre), turn * direction);
 }
 
 }  // namespace tesserae::render

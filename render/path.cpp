@@ -46,91 +46,122 @@ LightTransport::LightTransport(const Picture& picture, const PlacedBodies& place
     if (needs_rays(picture)) scene_.emplace(placed, tree, picture.settings);
 }
 
-Color LightTransport::radiance(const std::optional<Surface>& first, const Vec4& origin,
-                               const Vec4& direction, const Sampler& sampler,
-                               FrameStats& stats) const {
-    const bool is_direct = picture_.settings.integrator == Integrator::kDirect;
-    // The usual view rays of the direct picture need nothing of what follows.
-    if (is_direct && lights_.spheres.empty()) {
-        if (!first) return lights_.sky;
-        if (!is_specular(*first->material)) return shading_.radiance(*first, -direction, stats);
+void LightTransport::radiance(std::span<const Start> starts, std::span<Color> colors,
+                              FrameStats& stats) const {
+    Wave wave;
+    for (std::uint32_t i = 0; i < starts.size(); ++i) {
+        const Start& start = starts[i];
+        // The usual view rays of the direct picture need nothing of what follows.
+        if (is_direct() && lights_.spheres.empty()) {
+            colors[i] = lights_.sky;
+            if (!start.first) continue;
+            if (!is_specular(*start.first->material)) {
+                colors[i] = shading_.radiance(*start.first, -start.direction, stats);
+                continue;
+            }
+        }
+        Path path = {{start.origin, start.direction}, {}, i};
+        path.ray.is_view = true;
+        if (start.first) path.arrival.surface = *start.first;
+        const double limit = start.first ? start.first->distance : kMiss;
+        path.arrival.light = lights_.first_sphere(start.origin, start.direction, limit).sphere;
+        wave.live.push_back(static_cast<std::uint32_t>(wave.paths.size()));
+        wave.paths.push_back(path);
     }
+
+    for (int scattered = 0; !wave.live.empty(); ++scattered) {
+        std::erase_if(wave.live, [&](std::uint32_t i) {
+            Path& path = wave.paths[i];
+            return !scatter(path, scattered, starts[path.start].sampler, stats);
+        });
+        trace(wave, stats);
+    }
+    for (const Path& path : wave.paths) colors[path.start] = path.sum;
+}
+
+void LightTransport::add(Path& path, const Color& light, bool is_indirect) const {
+    const Color seen = path.throughput * light;
+    path.sum += is_indirect ? clamped(seen, picture_.settings.clamp_indirect) : seen;
+}
+
+bool LightTransport::scatter(Path& path, int scattered, const Sampler& sampler,
+                             FrameStats& stats) const {
+    if (!path.arrival.surface || path.arrival.light != LightSet::kNone) {
+        add(path, light_seen(path.ray, path.arrival), path.since_rough > 1);
+        return false;
+    }
+    const Surface& surface = *path.arrival.surface;
+    const int bounces = picture_.settings.bounces;
+    const bool is_mirror = is_specular(*surface.material);
+    if (is_direct() && !is_mirror && scattered <= bounces) {
+        path.sum += path.throughput * shading_.radiance(surface, -path.ray.direction, stats);
+        return false;
+    }
+    add(path, surface.material->emission, path.since_rough > 1);
+    if (scattered > bounces) return false;
 
     const auto groups =
         1 + static_cast<std::uint32_t>(lights_.suns.size() + lights_.spheres.size());
-    Ray ray = {origin, direction};
-    ray.is_view = true;
-    Arrival arrival = {first};
-    const double limit = first ? first->distance : kMiss;
-    arrival.light = lights_.first_sphere(ray.origin, direction, limit).sphere;
+    const std::uint32_t group = groups * static_cast<std::uint32_t>(scattered);
+    const auto u = sampler.group(group);
+    if (is_mirror)
+        path.throughput *= scatter_specular(path.ray, path.arrival, u[0]);
+    else
+        scatter_rough(path, u, sampler, group + 1, stats);
+    if (!is_mirror || path.since_rough > 0) ++path.since_rough;
 
-    Color sum = Color::Zero(), throughput = Color::Ones();
-    // Scatterings since the first surface that is not specular, with that one's. What such a
-    // surface gets from a light or from what glows is direct; light of longer ways is not.
-    int since_diffuse = 0;
-    const auto add = [&](const Color& light, bool is_indirect) {
-        sum += is_indirect ? clamped(throughput * light, picture_.settings.clamp_indirect)
-                           : Color(throughput * light);
-    };
-    for (int scattered = 0;; ++scattered) {
-        if (!arrival.surface || arrival.light != LightSet::kNone) {
-            add(light_seen(ray, arrival), since_diffuse > 1);
-            return sum;
-        }
-        const Surface& surface = *arrival.surface;
-        const Vec4 out = -ray.direction;
-        const bool goes_on = is_specular(*surface.material) || !is_direct;
-        if (!goes_on && scattered <= picture_.settings.bounces)
-            return sum + throughput * shading_.radiance(surface, out, stats);
-        add(surface.material->emission, since_diffuse > 1);
-        if (scattered > picture_.settings.bounces) return sum;
-
-        const std::uint32_t group = groups * static_cast<std::uint32_t>(scattered);
-        const auto u = sampler.group(group);
-        if (is_specular(*surface.material)) {
-            throughput *= scatter_specular(ray, arrival, u[0]);
-            if (since_diffuse > 0) ++since_diffuse;
-        } else {
-            const Bsdf bsdf(surface, out);
-            // Glass lets no straight ray to a light pass.
-            const bool is_free = ray.medium == GlassBodies::kNone;
-            if (is_free) {
-                const Color light =
-                    light_of_points(surface, bsdf, stats) +
-                    light_of_spheres_and_suns(surface, bsdf, sampler, group + 1, stats);
-                add(light, since_diffuse > 0);
-            }
-            const Bsdf::Sample next = bsdf.sample({u[0], u[1], u[2]});
-            throughput *= next.weight;
-            ray = {surface.point, next.in, surface.body, ray.medium, is_free ? next.density : 0};
-            ++since_diffuse;
-        }
-
-        // Inside glass radiance is up to index^3 as high: what counts is what gets out.
-        const double index = glass_.refractive_index(ray.medium);
-        const double most = throughput.maxCoeff() * index * index * index;
-        if (!(most > 0)) return sum;
-        if (scattered >= kRouletteFrom) {
-            const double survival = std::min(kSurvival, most);
-            if (u[3] >= survival) return sum;
-            throughput /= survival;
-        }
-        arrival = arrive(ray, stats);
+    // Inside glass radiance is up to index^3 as high: what counts is what gets out.
+    const double index = glass_.refractive_index(path.ray.medium);
+    const double most = path.throughput.maxCoeff() * index * index * index;
+    if (!(most > 0)) return false;
+    if (scattered >= kRouletteFrom) {
+        const double survival = std::min(kSurvival, most);
+        if (u[3] >= survival) return false;
+        path.throughput /= survival;
     }
+    return true;
 }
 
-LightTransport::Arrival LightTransport::arrive(const Ray& ray, FrameStats& stats) const {
-    ++stats.bounce_rays;
-    GlassBodies::Event event;
-    if (ray.medium == GlassBodies::kNone)
-        event.hit = scene_->nearest(ray.origin, ray.direction, kMiss, ray.on, stats);
-    else
-        event = glass_.next(ray.medium, ray.origin, ray.direction, ray.on, stats);
-    Arrival arrival;
-    arrival.light = lights_.first_sphere(ray.origin, ray.direction, event.hit.distance).sphere;
-    arrival.is_exit = event.is_exit;
-    if (event.hit) arrival.surface = shading_.surface(event.hit, ray.origin, ray.direction);
-    return arrival;
+void LightTransport::scatter_rough(Path& path, const std::array<double, 4>& u,
+                                   const Sampler& sampler, std::uint32_t group,
+                                   FrameStats& stats) const {
+    const Surface& surface = *path.arrival.surface;
+    const Bsdf bsdf(surface, -path.ray.direction);
+    // Glass lets no straight ray to a light pass.
+    const bool is_free = path.ray.medium == GlassBodies::kNone;
+    if (is_free)
+        add(path,
+            light_of_points(surface, bsdf, stats) +
+                light_of_spheres_and_suns(surface, bsdf, sampler, group, stats),
+            path.since_rough > 0);
+    const Bsdf::Sample next = bsdf.sample({u[0], u[1], u[2]});
+    path.throughput *= next.weight;
+    path.ray = {surface.point, next.in, surface.body, path.ray.medium, is_free ? next.density : 0};
+}
+
+void LightTransport::trace(Wave& wave, FrameStats& stats) const {
+    stats.bounce_rays += wave.live.size();
+    const auto is_free = [](const Ray& ray) { return ray.medium == GlassBodies::kNone; };
+    wave.rays.clear();
+    for (const std::uint32_t i : wave.live) {
+        const Ray& ray = wave.paths[i].ray;
+        if (is_free(ray)) wave.rays.push_back({ray.origin, ray.direction, ray.on});
+    }
+    wave.hits.resize(wave.rays.size());
+    if (!wave.rays.empty()) scene_->nearest(wave.rays, wave.hits, stats);
+
+    auto hit = wave.hits.begin();
+    for (const std::uint32_t i : wave.live) {
+        const Ray& ray = wave.paths[i].ray;
+        const GlassBodies::Event event =
+            is_free(ray) ? GlassBodies::Event{*hit++}
+                         : glass_.next(ray.medium, ray.origin, ray.direction, ray.on, stats);
+        Arrival& arrival = wave.paths[i].arrival;
+        arrival = {};
+        arrival.light = lights_.first_sphere(ray.origin, ray.direction, event.hit.distance).sphere;
+        arrival.is_exit = event.is_exit;
+        if (event.hit) arrival.surface = shading_.surface(event.hit, ray.origin, ray.direction);
+    }
 }
 
 Color LightTransport::light_seen(const Ray& ray, const Arrival& arrival) const {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "render/glass_bodies.hpp"
 #include "render/light/light_set.hpp"
@@ -35,12 +38,15 @@ class LightTransport {
     LightTransport(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
                    const LightSet& lights, const Shading& shading);
 
-    /// @param first       what a view ray met, if any body
-    /// @param origin      of that ray, relative to the camera, world axes
-    /// @param direction   of that ray, unit
-    /// @param sampler     of the sample; its groups are used from 0 on
-    Color radiance(const std::optional<Surface>& first, const Vec4& origin, const Vec4& direction,
-                   const Sampler& sampler, FrameStats& stats) const;
+    /// What a view ray met, if any body, and the rest that decides a path.
+    struct Start {
+        const Surface* first;    ///< null if none
+        Vec4 origin, direction;  ///< of the view ray, relative to the camera, unit; world axes
+        Sampler sampler;         ///< of the sample; its groups are used from 0 on
+    };
+    /// The radiance along each view ray: `colors`, as many as `starts`. Paths are followed side by
+    /// side, since their rays are traced faster so; none changes what another one brings.
+    void radiance(std::span<const Start> starts, std::span<Color> colors, FrameStats& stats) const;
 
   private:
     struct Ray {
@@ -58,7 +64,34 @@ class LightTransport {
         std::uint32_t light = LightSet::kNone;
     };
 
-    Arrival arrive(const Ray& ray, FrameStats& stats) const;
+    struct Path {
+        Ray ray;
+        Arrival arrival;  ///< what the ray meets
+        std::uint32_t start;
+        Color sum = Color::Zero(), throughput = Color::Ones();
+        /// Scatterings since the first surface that is no mirror or glass, with that one's. What
+        /// such a surface gets from a light or from what glows is direct, what comes farther not.
+        int since_rough = 0;
+    };
+
+    bool is_direct() const { return picture_.settings.integrator == Integrator::kDirect; }
+    /// Adds light that comes to where a path has arrived; indirect light is clamped.
+    void add(Path& path, const Color& light, bool is_indirect) const;
+    /// Adds the light that comes from where a path has arrived after so many scatterings, and sends
+    /// its ray on. False where it ends.
+    bool scatter(Path& path, int scattered, const Sampler& sampler, FrameStats& stats) const;
+    /// Sends a ray on from a surface that is no mirror or glass, and adds light.
+    void scatter_rough(Path& path, const std::array<double, 4>& u, const Sampler& sampler,
+                       std::uint32_t group, FrameStats& stats) const;
+    /// Paths that are followed side by side.
+    struct Wave {
+        std::vector<Path> paths;
+        std::vector<std::uint32_t> live;  ///< the paths that go on, ascending
+        std::vector<RayScene::Ray> rays;
+        std::vector<Hit> hits;
+    };
+    /// Traces the rays of the live paths.
+    void trace(Wave& wave, FrameStats& stats) const;
     /// Radiance of the light or the sky that a ray ends in, weighted against the choice of lights.
     Color light_seen(const Ray& ray, const Arrival& arrival) const;
     Color light_of_spheres_and_suns(const Surface& surface, const Bsdf& bsdf,

@@ -1,22 +1,101 @@
 #include "render/ray_scene.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "render/ray_stream.hpp"
+
 namespace tesserae::render {
 
-Hit RayScene::nearest(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
-                      FrameStats& stats) const {
-    Hit hit;
-    const auto visit = [&](std::uint32_t body) {
-        if (body == on) return true;
-        const double t = hit_distance(placed_, body, origin, direction, limit, settings_, stats);
+RayScene::RayScene(const PlacedBodies& placed, const BodyTree& tree, const Settings& settings)
+    : placed_(placed), tree_(tree), settings_(settings) {
+    const bool is_closed_form = settings.intersector == Intersector::kAnalytic;
+    for (const PlacedBody& body : placed.bodies) {
+        const auto* ball = std::get_if<Hypersphere>(body.shape);
+        const auto* box = std::get_if<Hyperbox>(body.shape);
+        if (is_closed_form && ball && body.turn == PlacedBody::kNotTurned) {
+            slots_.push_back({kBall, static_cast<std::uint32_t>(balls_.size())});
+            balls_.push_back({body.centre, *ball});
+        } else if (is_closed_form && box) {
+            slots_.push_back({kBox, static_cast<std::uint32_t>(boxes_.size())});
+            boxes_.push_back({body.centre, placed.turns[body.turn], *box});
+        } else {
+            slots_.push_back({kOther, static_cast<std::uint32_t>(slots_.size())});
+        }
+    }
+}
+
+void RayScene::nearest(std::span<const Ray> rays, std::span<Hit> hits, FrameStats& stats) const {
+    for (std::size_t i = 0; i < rays.size(); i += RayStream::kMost) {
+        const std::size_t count = std::min<std::size_t>(RayStream::kMost, rays.size() - i);
+        nearest_in_stream(rays.subspan(i, count), hits.subspan(i, count), stats);
+    }
+}
+
+void RayScene::nearest_in_stream(std::span<const Ray> rays, std::span<Hit> hits,
+                                 FrameStats& stats) const {
+    RayStream stream(tree_);
+    const auto limit = [&](std::size_t i) { return std::min(rays[i].limit, hits[i].distance); };
+    const auto distance = [&](std::size_t i, std::uint32_t body) {
+        const Ray& ray = rays[i];
+        return hit_distance(placed_, body, ray.origin, ray.direction, limit(i), settings_, stats);
+    };
+    const auto take = [&](std::uint32_t i, std::uint32_t body, double t) {
+        Hit& hit = hits[i];
+        if (!(t <= rays[i].limit)) return;
         if (t < hit.distance || (t == hit.distance && t < kMiss && body < hit.body)) {
             hit = {t, body};
-            limit = t;
+            stream.shorten(i, t);
         }
-        return true;
     };
-    for (const std::uint32_t body : tree_.unbounded()) visit(body);
-    tree_.for_each_on_ray(origin, direction, limit, visit);
-    return hit;
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+        hits[i] = {};
+        for (const std::uint32_t body : tree_.unbounded())
+            if (body != rays[i].on) take(i, body, distance(i, body));
+        stream.add(rays[i].origin, rays[i].direction, limit(i));
+    }
+    std::array<std::array<RayStream::Candidate, RayStream::kMostAtOnce>, kKinds> tests;
+    std::array<double, RayStream::kMostAtOnce> distances;
+    for (auto named = stream.next(); !named.empty(); named = stream.next()) {
+        // By kind, so that no test has to ask for it, and ahead, so that none waits for memory.
+        std::array<std::size_t, kKinds> counts{};
+        for (const RayStream::Candidate& candidate : named) {
+            const Slot& slot = slots_[candidate.body()];
+            tests[slot.kind][counts[slot.kind]] = candidate;
+            counts[slot.kind] += candidate.body() != rays[candidate.ray()].on;
+            prefetch(slot);
+        }
+        const auto for_each_test = [&](Kind kind, auto&& hit_of) {
+            for (std::size_t k = 0; k < counts[kind]; ++k)
+                distances[k] = hit_of(tests[kind][k].ray(), tests[kind][k].body());
+            for (std::size_t k = 0; k < counts[kind]; ++k)
+                take(tests[kind][k].ray(), tests[kind][k].body(), distances[k]);
+        };
+        for_each_test(kBall, [&](std::uint32_t i, std::uint32_t body) {
+            const Ball& ball = balls_[slots_[body].index];
+            return ray_hit(ball.shape, rays[i].origin - ball.centre, rays[i].direction);
+        });
+        for_each_test(kBox, [&](std::uint32_t i, std::uint32_t body) {
+            const Box& box = boxes_[slots_[body].index];
+            return ray_hit(box.shape, box.turn * (rays[i].origin - box.centre),
+                           box.turn * rays[i].direction);
+        });
+        // Sphere tracing gains from every limit that is found on the way.
+        for (std::size_t k = 0; k < counts[kOther]; ++k) {
+            const std::uint32_t i = tests[kOther][k].ray(), body = tests[kOther][k].body();
+            take(i, body, distance(i, body));
+        }
+    }
+}
+
+void RayScene::prefetch(const Slot& slot) const {
+    const std::array<const void*, kKinds> first = {balls_.data(), boxes_.data(),
+                                                   placed_.bodies.data()};
+    constexpr std::array<std::size_t, kKinds> kSize = {sizeof(Ball), sizeof(Box),
+                                                       sizeof(PlacedBody)};
+    const auto* record =
+        static_cast<const std::byte*>(first[slot.kind]) + kSize[slot.kind] * slot.index;
+    for (std::size_t at = 0; at < sizeof(Box); at += alignof(Box)) __builtin_prefetch(record + at);
 }
 
 bool RayScene::is_blocked(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,

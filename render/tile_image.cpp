@@ -63,7 +63,10 @@ class TileRays {
     /// Samples begin <= i < end, at most kBatch.
     void add_samples(const Cell& cell, int x, int y, int begin, int end, Filtered& sum);
     void trace(std::span<View> views);
-    void add(const View& view, const SampleNumber& sample, Filtered& sum);
+    /// The views of a pixel's samples from `first` on.
+    void add(std::span<const View> views, const SampleNumber& first, Filtered& sum);
+    /// What comes along them: into colors_.
+    void light(std::span<const View> views, const SampleNumber& first);
 
     const FrameScene& scene_;
     const Tile& tile_;
@@ -71,6 +74,8 @@ class TileRays {
     std::vector<View> views_;
     std::vector<ViewRay> rays_;
     std::vector<Hit> hits_;
+    std::vector<LightTransport::Start> starts_;
+    std::vector<Color> colors_;
 };
 
 void TileRays::trace(std::span<View> views) {
@@ -116,26 +121,43 @@ void TileRays::add_samples(const Cell& cell, int x, int y, int begin, int end, F
         views_.emplace_back(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
     }
     trace(views_);
-    for (int i = begin; i < end; ++i)
-        add(views_[static_cast<std::size_t>(i - begin)], {y, x, static_cast<std::uint32_t>(i)},
-            sum);
+    add(views_, {y, x, static_cast<std::uint32_t>(begin)}, sum);
 }
 
-void TileRays::add(const View& view, const SampleNumber& sample, Filtered& sum) {
-    ++sum.count;
-    if (view.surface) {
+void TileRays::add(std::span<const View> views, const SampleNumber& first, Filtered& sum) {
+    for (const View& view : views) {
+        ++sum.count;
+        if (!view.surface) continue;
         sum.alpha += 1;
         sum.albedo += view.surface->albedo;
     }
     if (!scene_.wants_color()) return;
-    const Sampler sampler(sample.x, sample.y, sample.sample);
-    const Color color =
-        view.instant->transport.radiance(view.surface, view.origin, view.direction, sampler, stats);
-    if (color.isFinite().all()) {
-        sum.color.add(color);
-    } else {
-        sum.color.add(Color::Zero());
-        stats.count_invalid(sample, 1);
+    light(views, first);
+    SampleNumber sample = first;
+    for (const Color& color : colors_) {
+        if (color.isFinite().all()) {
+            sum.color.add(color);
+        } else {
+            sum.color.add(Color::Zero());
+            stats.count_invalid(sample, 1);
+        }
+        ++sample.sample;
+    }
+}
+
+void TileRays::light(std::span<const View> views, const SampleNumber& first) {
+    starts_.clear();
+    for (std::uint32_t i = 0; i < views.size(); ++i)
+        starts_.push_back({views[i].surface ? &*views[i].surface : nullptr, views[i].origin,
+                           views[i].direction, Sampler(first.x, first.y, first.sample + i)});
+    colors_.resize(views.size());
+    // Those of one instant together.
+    for (std::size_t begin = 0, end; begin < views.size(); begin = end) {
+        const Instant& instant = *views[begin].instant;
+        end = begin + 1;
+        while (end < views.size() && views[end].instant == &instant) ++end;
+        instant.transport.radiance(std::span(starts_).subspan(begin, end - begin),
+                                   std::span(colors_).subspan(begin, end - begin), stats);
     }
 }
 
@@ -177,7 +199,7 @@ Pixel TileRays::pixel(int x, int y) {
     if (most == 1 || c.depth || c.normal || c.position || c.id) {
         const View view = centre(*cell, x, y);
         store_view(view, pixel);
-        if (most == 1) add(view, {y, x, 0}, sum);
+        if (most == 1) add({&view, 1}, {y, x, 0}, sum);
     }
     if (most > 1 && (scene_.wants_color() || c.albedo || c.samples || c.variance)) {
         while (sum.count < least)

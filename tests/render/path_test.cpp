@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "render/material/dielectric.hpp"
 #include "render/material/microfacet.hpp"
@@ -439,6 +441,42 @@ TEST(Path, ViewRaysSeeSphereLightsInFrontOfBodies) {
         // A hard look past the body.
         EXPECT_EQ(
             TracedScene(scene).radiance(Vec4(0, 0.27, 1, 0).normalized(), Sampler(0, 0, 0))[0], 9);
+    }
+}
+
+TEST(Path, PathsSideBySideBringWhatEachBringsAlone) {
+    // Of all materials and lights; some end at once, some in the sky, some by roulette.
+    Random random(530);
+    TestScene scene = path_scene(12);
+    scene.materials.resize(4);
+    scene.materials[1].kind = MaterialKind::kMirror;
+    scene.materials[2].kind = MaterialKind::kGlass;
+    scene.materials[3].kind = MaterialKind::kRough;
+    for (std::uint32_t i = 0; i < 60; ++i)
+        scene.add(random_shape(random, i % 3, 1), random_vector(random, 4), random_rotor(random),
+                  i % 4);
+    scene.lights.suns.emplace_back();
+    scene.lights.sky = Color::Constant(0.2);
+    for (const Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+        scene.settings.integrator = integrator;
+        if (integrator == Integrator::kPath)
+            scene.lights.spheres.push_back({Vec4(1, 5, 0, 1), 1, Color(3, 2, 1)});
+        const TracedScene traced(scene);
+        constexpr std::size_t kPaths = 200;
+        std::vector<std::optional<Surface>> met(kPaths);
+        std::vector<LightTransport::Start> starts;
+        std::vector<Color> expected;
+        for (std::size_t i = 0; i < kPaths; ++i) {
+            const Vec4 direction = random_direction(random);
+            const Sampler sampler(static_cast<int>(i), 0, 0);
+            met[i] = traced.first(direction);
+            starts.push_back({met[i] ? &*met[i] : nullptr, Vec4::Zero(), direction, sampler});
+            expected.push_back(traced.radiance(direction, sampler));
+        }
+        std::vector<Color> found(kPaths);
+        traced.transport.radiance(starts, found, traced.stats);
+        for (std::size_t i = 0; i < kPaths; ++i)
+            EXPECT_TRUE((found[i] == expected[i]).all()) << i << ": " << found[i].transpose();
     }
 }
 

@@ -4,7 +4,10 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "tests/render/test_scene.hpp"
 
@@ -28,6 +31,8 @@ Hit nearest_of_all(const PlacedBodies& placed, const Vec4& origin, const Vec4& d
 
 struct Rays {
     int traced = 0, hit = 0;
+    std::vector<RayScene::Ray> all;  ///< to be traced once more, side by side
+    std::vector<Hit> expected;
 };
 
 /// Compares one ray both ways, with and without a limit and a body left out.
@@ -36,7 +41,7 @@ void compare(const TestScene& scene, const PlacedBodies& placed, const RayScene&
              Rays& count) {
     FrameStats stats;
     const Hit expected = nearest_of_all(placed, origin, direction, limit, on, scene.settings);
-    const Hit hit = rays.nearest(origin, direction, limit, on, stats);
+    const Hit hit = rays.nearest({origin, direction, on, limit}, stats);
     ASSERT_EQ(hit.distance, expected.distance)
         << origin.transpose() << " toward " << direction.transpose();
     ASSERT_EQ(hit.body, expected.body) << origin.transpose() << " toward " << direction.transpose();
@@ -44,6 +49,25 @@ void compare(const TestScene& scene, const PlacedBodies& placed, const RayScene&
         << origin.transpose() << " toward " << direction.transpose();
     ++count.traced;
     count.hit += expected ? 1 : 0;
+    count.all.push_back({origin, direction, on, limit});
+    count.expected.push_back(expected);
+}
+
+/// Side by side every ray meets what it meets alone, whoever goes with it.
+void compare_side_by_side(const RayScene& rays, Rays& count) {
+    FrameStats stats;
+    std::vector<Hit> hits(count.all.size());
+    for (std::size_t begin = 0, size = 1; begin < hits.size(); begin += size) {
+        size = std::min(begin % 40 + 1, hits.size() - begin);
+        rays.nearest(std::span(count.all).subspan(begin, size),
+                     std::span(hits).subspan(begin, size), stats);
+    }
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_EQ(hits[i].distance, count.expected[i].distance) << i;
+        ASSERT_EQ(hits[i].body, count.expected[i].body) << i;
+    }
+    count.all.clear();
+    count.expected.clear();
 }
 
 /// Directions of all kinds: anywhere, along one, two or three axes, and nearly so.
@@ -95,6 +119,8 @@ void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double sp
             compare(scene, placed, rays, origin, direction, limit, on, count);
             if (::testing::Test::HasFatalFailure()) return;
         }
+        compare_side_by_side(rays, count);
+        if (::testing::Test::HasFatalFailure()) return;
     }
 }
 
@@ -121,6 +147,14 @@ TEST(RayScene, FindsTinyBodiesAmongHugeOnes) {
         if (HasFatalFailure()) return;
     }
     EXPECT_GT(count.hit, 15000);
+}
+
+TEST(RayScene, FindsBodiesOfTreesWithManyNodes) {
+    // More nodes of a level than rays test in one go.
+    Rays count;
+    TestScene scene = cloud(60, 4000, 4, 0.1, 0.4);
+    compare_many(scene, 61, 1500, 5, count);
+    EXPECT_GT(count.hit, 1000);
 }
 
 TEST(RayScene, FarFromTheCamera) {
@@ -160,6 +194,7 @@ TEST(RayScene, BodiesInOnePlaceAndOnAGrid) {
         compare(grid, placed, rays, origin, direction, kMiss, kNoBody, count);
         if (HasFatalFailure()) return;
     }
+    compare_side_by_side(rays, count);
     EXPECT_GT(count.hit - in_heap, 5000);
 }
 
@@ -172,13 +207,13 @@ TEST(RayScene, NoBodiesOneBodyOnlyPlanes) {
         const BodyTree tree(placed);
         const RayScene rays(placed, tree, scene.settings);
         FrameStats stats;
-        const Hit hit = rays.nearest(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats);
+        const Hit hit = rays.nearest({Vec4::Zero(), Vec4::UnitZ()}, stats);
         EXPECT_EQ(hit.distance, kind == 0 ? kMiss : 4);
         EXPECT_EQ(rays.is_blocked(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats), kind != 0);
-        EXPECT_FALSE(rays.nearest(Vec4::Zero(), -Vec4::UnitZ(), kMiss, kNoBody, stats));
-        EXPECT_FALSE(rays.nearest(Vec4::Zero(), Vec4::UnitZ(), 3.9, kNoBody, stats));
+        EXPECT_FALSE(rays.nearest({Vec4::Zero(), -Vec4::UnitZ()}, stats));
+        EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), kNoBody, 3.9}, stats));
         if (kind != 0) {
-            EXPECT_FALSE(rays.nearest(Vec4::Zero(), Vec4::UnitZ(), kMiss, 0, stats));
+            EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), 0}, stats));
         }
     }
 }

@@ -50,7 +50,12 @@ struct TracedScene {
     }
 
     Color radiance(const Vec4& direction, const Sampler& sampler) const {
-        return transport.radiance(first(direction), Vec4::Zero(), direction, sampler, stats);
+        const std::optional<Surface> met = first(direction);
+        const LightTransport::Start start = {met ? &*met : nullptr, Vec4::Zero(), direction,
+                                             sampler};
+        Color color;
+        transport.radiance({&start, 1}, {&color, 1}, stats);
+        return color;
     }
 };
 
