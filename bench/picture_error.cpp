@@ -165,10 +165,14 @@ class Light {
         const ViewRay ray = instant.rays.middle({0, 0, 0}, film);
         const Vec4 d =
             instant.camera.to_world({ray.direction.x(), ray.direction.y(), ray.direction.z(), 0});
-        const Hit hit = rays_.nearest(Vec4::Zero(), d, kMiss, RayScene::kNoBody, stats_);
+        const Hit hit = rays_.nearest({Vec4::Zero(), d}, stats_);
         const auto surface =
             hit ? std::optional(instant.shading.surface(hit, Vec4::Zero(), d)) : std::nullopt;
-        return instant.transport.radiance(surface, Vec4::Zero(), d, sampler, stats_);
+        const LightTransport::Start start = {surface ? &*surface : nullptr, Vec4::Zero(), d,
+                                             sampler};
+        Color color;
+        instant.transport.radiance({&start, 1}, {&color, 1}, stats_);
+        return color;
     }
 
   private:
