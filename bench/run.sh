@@ -169,12 +169,15 @@ scale() {
 scaling() {
     local scene configurations=()
     for scene in gas pile boxes stacks pyramid; do
-        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,20" "$scene,50000,120,3" "$scene,100000,120,3")
+        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,30")
+        local few=5 # steps
+        [ $scene != gas ] || few=60
+        configurations+=("$scene,50000,120,$few" "$scene,100000,120,$few")
     done
     scale scaling "$1" "${configurations[@]}"
 }
 
-scaling-million() { scale scaling-million "$1" gas,1000000,5,3 pile,1000000,45,3; }
+scaling-million() { scale scaling-million "$1" gas,1000000,60,10 pile,1000000,150,3; }
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2
