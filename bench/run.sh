@@ -167,17 +167,19 @@ scale() {
 }
 
 scaling() {
+    # Piles need time to come down; stacks and pyramids stand from the start.
+    local -A settle=([gas]=120 [pile]=720 [boxes]=480 [stacks]=60 [pyramid]=60)
+    local -A few=([gas]=60 [pile]=5 [boxes]=5 [stacks]=5 [pyramid]=5)
     local scene configurations=()
     for scene in gas pile boxes stacks pyramid; do
-        configurations+=("$scene,100,120,400" "$scene,1000,120,100" "$scene,10000,120,30")
-        local few=5 # steps
-        [ $scene != gas ] || few=60
-        configurations+=("$scene,50000,120,$few" "$scene,100000,120,$few")
+        configurations+=("$scene,100,${settle[$scene]},400" "$scene,1000,${settle[$scene]},100"
+            "$scene,10000,${settle[$scene]},30" "$scene,50000,${settle[$scene]},${few[$scene]}"
+            "$scene,100000,${settle[$scene]},${few[$scene]}")
     done
     scale scaling "$1" "${configurations[@]}"
 }
 
-scaling-million() { scale scaling-million "$1" gas,1000000,60,10 pile,1000000,150,3; }
+scaling-million() { scale scaling-million "$1" gas,1000000,60,10 pile,1000000,480,3; }
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2
