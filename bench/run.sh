@@ -179,7 +179,7 @@ scaling() {
     scale scaling "$1" "${configurations[@]}"
 }
 
-scaling-million() { scale scaling-million "$1" gas,1000000,60,10 pile,1000000,480,3; }
+scaling-million() { scale scaling-million "$1" gas,1000000,5,3 pile,1000000,45,3; }
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2
