@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds into build/bench, measures, and writes bench/results. The machine
 # should have nothing else to do; the load is noted in the results.
-#   bash bench/run.sh              all parts, about an hour
+#   bash bench/run.sh              all parts
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
 #   bash bench/run.sh leave-out    what leaving out parts saves, two minutes
@@ -12,8 +12,8 @@
 #   bash bench/run.sh cycles       a still beside Blender's Cycles (installs it), 5 minutes; not one of all parts
 #   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
-#   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, a quarter of an hour
-#   bash bench/run.sh scaling      the stages of a step against bodies and threads, ten minutes
+#   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
+#   bash bench/run.sh scaling      the stages of a step against bodies and threads, twelve minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"

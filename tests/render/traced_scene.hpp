@@ -1,7 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "render/path.hpp"
 #include "tests/render/test_scene.hpp"
@@ -76,6 +79,24 @@ inline Mean mean_radiance(const TracedScene& traced, const Vec4& direction, int 
     for (int i = 0; i < count; ++i)
         mean.add(traced.radiance(direction, Sampler(i % 1024, i / 1024, 0)));
     return mean;
+}
+
+/// Path traced, bodies by their closed forms.
+inline TestScene path_scene(int bounces) {
+    TestScene scene;
+    scene.settings.integrator = Integrator::kPath;
+    scene.settings.bounces = bounces;
+    scene.settings.intersector = Intersector::kAnalytic;
+    return scene;
+}
+
+/// Within 5 deviations, and those small enough to mean something.
+inline void expect_near(const Mean& found, double expected, double most_sigma,
+                        const std::string& what) {
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_LE(found.sigma()[c], most_sigma) << what;
+        EXPECT_NEAR(found.mean()[c], expected, 5 * found.sigma()[c] + 1e-12) << what;
+    }
 }
 
 }  // namespace tesserae::render
