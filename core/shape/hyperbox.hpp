@@ -30,6 +30,5 @@ Vec4 normal(const Hyperbox& shape, const Vec4& point);
 double ray_hit(const Hyperbox& shape, const Vec4& origin, const Vec4& direction);
 double ray_exit(const Hyperbox& shape, const Vec4& origin, const Vec4& direction);
 Rim rim(const Hyperbox& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
-Rim rim(const Hyperbox& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
 
 }  // namespace tesserae
