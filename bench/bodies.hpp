@@ -2,13 +2,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <random>
 
 #include "core/dynamics/bodies.hpp"
 
 namespace tesserae::bench {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 inline BodyType sphere_type(double radius, double mass, double friction, double restitution) {
     BodyType type;
@@ -58,7 +59,7 @@ inline Bodies spheres_above_floor(int count, int across) {
 
     const auto first_type = static_cast<std::uint32_t>(bodies.types.size());
     for (double radius : {0.3, 0.4, 0.5}) {
-        const double mass = 1000 * 0.5 * kPi * kPi * std::pow(radius, 4);
+        const double mass = 1000 * 0.5 * pi * pi * std::pow(radius, 4);
         bodies.types.push_back(sphere_type(radius, mass, 0.5, 0.1));
     }
     std::mt19937_64 engine(1);

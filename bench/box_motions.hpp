@@ -101,8 +101,8 @@ inline std::vector<BoxMotion> box_motions() {
                        -2 * z),
             lying_box("slide along a side with friction 0.5", 0.5, 0, 0, 3),
             lying_box("slide askew with friction 0.5", 0.5, 0, 0.6, 3),
-            lying_box("incline of 30 degrees with friction 0.3", 0.3, -kPi / 6, 0, 0),
-            lying_box("incline of 30 degrees askew with friction 0.3", 0.3, -kPi / 6, 0.6, 0)};
+            lying_box("incline of 30 degrees with friction 0.3", 0.3, -pi / 6, 0, 0),
+            lying_box("incline of 30 degrees askew with friction 0.3", 0.3, -pi / 6, 0.6, 0)};
 }
 
 }  // namespace tesserae::bench

@@ -120,7 +120,7 @@ Bodies long_capsule() {
     type.mass = 10;
     type.friction = 0.5;
     const BodyId id = add(bodies, type, {0, 0.01, 0, 0});
-    bodies.rotor[id] = exp(Bivector{0.25 * kPi, 0, 0, 0, 0, 0});  // lies along x
+    bodies.rotor[id] = exp(Bivector{0.25 * pi, 0, 0, 0, 0, 0});  // lies along x
     return bodies;
 }
 

@@ -1,9 +1,6 @@
 // Rays against random spheres and boxes, one thread: millions of rays a second as CSV, beside two
 // yardsticks of the same run. See README.md for the columns.
 //   rays [BODIES...]     by default 100, 1000, 10000, 100000
-
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +15,7 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "parallel/threads.hpp"
+#include "render/embree.hpp"
 #include "render/film_list.hpp"
 #include "render/lanes.hpp"
 #include "render/ray_scene.hpp"
@@ -50,8 +48,8 @@ struct Cloud {
         // Seen by a ray from anywhere a ball of radius r covers 4/3 pi r^3, a cube of side s
         // 2/(3 pi) of its boundary's content, 8 s^3.
         const double section = kMetOnAverage * std::pow(2 * kHalf, 3) / count;
-        const double radius = std::cbrt(section * 3 / (4 * kPi));
-        const double side = std::cbrt(section * 3 * kPi / 16);
+        const double radius = std::cbrt(section * 3 / (4 * pi));
+        const double side = std::cbrt(section * 3 * pi / 16);
         for (int i = 0; i < count; ++i) {
             BodyType type = sphere_type(radius, 1, 0.5, 0);
             Vec4 sides, x, u, v;
@@ -208,8 +206,7 @@ double embree_rate(const FrameScene& scene) {
     rtcCommitScene(spheres);
     const std::vector<ViewRay> rays = view_rays(scene.opening().camera);
     const Time time = time_of([&] {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        RayContext context = ray_context();
         for (const ViewRay& r : rays) {
             RTCRayHit hit{};
             hit.ray.dir_x = static_cast<float>(r.direction.x());
@@ -218,7 +215,7 @@ double embree_rate(const FrameScene& scene) {
             hit.ray.tfar = 200;
             hit.ray.mask = ~0u;
             hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(spheres, &context, &hit);
+            intersect(spheres, context, hit);
         }
     });
     rtcReleaseScene(spheres);

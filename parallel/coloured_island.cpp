@@ -12,13 +12,13 @@ namespace tesserae::parallel {
 namespace {
 
 /// Items of one task: some 5 us of work.
-constexpr std::size_t kBodyGrain = 512;
+constexpr std::size_t kIslandBodyGrain = 512;
 constexpr std::size_t kPointGrain = 1024;
 
 struct AllThreads {
     template <class Work>
     void for_bodies(Range bodies, const Work& work) const {
-        for_each_range(bodies.end - bodies.begin, kBodyGrain, [&](Range piece) {
+        for_each_range(bodies.end - bodies.begin, kIslandBodyGrain, [&](Range piece) {
             work(Range{bodies.begin + piece.begin, bodies.begin + piece.end});
         });
     }

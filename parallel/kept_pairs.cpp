@@ -8,7 +8,7 @@ namespace tesserae::parallel {
 namespace {
 
 /// Bodies and candidates of one task: some 10 us of work.
-constexpr std::size_t kBodyGrain = 512, kPairGrain = 2048;
+constexpr std::size_t kBallGrain = 512, kCandidateGrain = 2048;
 
 /// A ball is larger than the body's bounds by this part of the body's radius, and by the way that
 /// it goes in so many steps, but by no more than its radius. More, and a search and each step look
@@ -26,7 +26,7 @@ void KeptPairs::find_pairs(const Simulation& simulation, StepData& step) {
 
 void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
     lists_.collect(
-        candidates_.size(), kPairGrain,
+        candidates_.size(), kCandidateGrain,
         [&](Range range, std::vector<BodyPair>& list) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const auto [a, b] = candidates_[i];
@@ -37,7 +37,7 @@ void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
 }
 
 bool KeptPairs::holds(const StepData& step) const {
-    return held_ && !any_range(large_.size(), kBodyGrain, [&](Range range) {
+    return held_ && !any_range(large_.size(), kBallGrain, [&](Range range) {
                for (std::size_t i = range.begin; i < range.end; ++i) {
                    const Bounds &now = step.bounds[i], &large = large_[i];
                    if (!((now.centre - large.centre).norm() + now.radius <= large.radius))
@@ -50,7 +50,7 @@ bool KeptPairs::holds(const StepData& step) const {
 void KeptPairs::search(const Simulation& simulation, const StepData& step) {
     held_ = false;  // so it stays if the search fails for want of memory
     large_.resize(step.bounds.size());
-    for_each_range(large_.size(), kBodyGrain, [&](Range range) {
+    for_each_range(large_.size(), kBallGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const TypeProperties& type = simulation.type_of(static_cast<BodyId>(i));
             large_[i] = step.bounds[i];

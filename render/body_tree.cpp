@@ -13,7 +13,7 @@ namespace tesserae::render {
 namespace {
 
 using Four = Eigen::Array4f;
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
+constexpr float kInfiniteFloat = std::numeric_limits<float>::infinity();
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 /// Part of a body's coordinates and size by which its bounds are widened: three times the rounding
 /// of a double to a float, and a million times what any hit is out by.
@@ -23,7 +23,7 @@ constexpr double kWiden = 2e-7;
 constexpr double kLeast = 1e-18;
 
 struct Box {
-    Four low = Four::Constant(kInfinite), high = Four::Constant(-kInfinite);
+    Four low = Four::Constant(kInfiniteFloat), high = Four::Constant(-kInfiniteFloat);
 
     void add(const Box& o) { low = low.min(o.low), high = high.max(o.high); }
     /// Half the content of the box's boundary: how often it is met by rays from everywhere.
@@ -215,7 +215,7 @@ std::pair<Part, Part> BodyTreeBuilder::halves(const Part& part, bool by_cost) {
 
 BodyTreeBuilder::Split BodyTreeBuilder::best_split(const Part& part) const {
     std::array<float, 5> low, high;
-    low.fill(kInfinite), high.fill(-kInfinite);
+    low.fill(kInfiniteFloat), high.fill(-kInfiniteFloat);
     for (std::size_t i = part.begin; i < part.end; ++i)
         for (std::size_t k = 0; k < low.size(); ++k) {
             low[k] = std::min(low[k], members_[i].key[k]);
@@ -227,7 +227,7 @@ BodyTreeBuilder::Split BodyTreeBuilder::best_split(const Part& part) const {
         split.key = static_cast<int>(k);
         split.low = low[k];
         split.scale = kBins / (high[k] - low[k]);
-        if (high[k] > low[k] && split.scale < kInfinite) try_key(part, split, best);
+        if (high[k] > low[k] && split.scale < kInfiniteFloat) try_key(part, split, best);
     }
     return best;
 }
@@ -275,7 +275,7 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
         collect(branch.halves[1], kLanes - first, children);
     }
     BodyTree::Node node{};
-    node.boxes.fill({all_lanes(kInfinite), all_lanes(-kInfinite)});
+    node.boxes.fill({all_lanes(kInfiniteFloat), all_lanes(-kInfiniteFloat)});
     for (std::size_t i = 0; i < children.size(); ++i) {
         const Part& part = children[i]->part;
         for (std::size_t axis = 0; axis < 4; ++axis) {

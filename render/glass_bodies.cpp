@@ -6,7 +6,6 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// A point deeper than this part of the lengths involved is inside: rounding leaves points of a
 /// surface on either side of it.
 constexpr double kInside = 1e-9;

@@ -39,10 +39,10 @@ double trace(const S& shape, const Vec4& origin, const Vec4& direction, double s
 
 /// Where the ray is inside the sphere about the origin; empty (start > end) if nowhere. The
 /// distance to the ray's line is taken from its vector, which does not cancel.
-struct Interval {
+struct Span {
     double start, end;
 };
-Interval inside_sphere(const Vec4& origin, const Vec4& direction, double radius) {
+Span inside_sphere(const Vec4& origin, const Vec4& direction, double radius) {
     const double middle = -origin.dot(direction);
     const double off = (origin + middle * direction).squaredNorm();
     const double square = radius * radius - off;
@@ -66,7 +66,7 @@ double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Vec4&
                 }
                 double start = 0, end = limit;
                 if constexpr (std::decay_t<decltype(shape)>::kBounded) {
-                    const Interval inside = inside_sphere(o, d, body.radius);
+                    const Span inside = inside_sphere(o, d, body.radius);
                     start = std::max(start, inside.start);
                     end = std::min(end, inside.end + kOnSurface * inside.end);
                     if (start > end) return kMiss;

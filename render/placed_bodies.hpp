@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/dynamics/bodies.hpp"
@@ -8,13 +9,16 @@
 
 namespace tesserae::render {
 
+/// The radius of what has no bounds [m].
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
 /// A visible body as rays see it. World axes, origin at the camera, so that a scene far from the
 /// world's origin loses no digits.
 struct PlacedBody {
     static constexpr std::uint32_t kNotTurned = ~std::uint32_t{0};
 
     Vec4 centre;    ///< of the body's frame [m]; a hyperplane's frame is the world
-    double radius;  ///< of the bounding sphere about it [m]; infinite if unbounded
+    double radius;  ///< of the bounding sphere about it [m]; kInfinite if unbounded
     const Shape* shape;
     BodyId id;
     std::uint32_t turn;  ///< index into PlacedBodies::turns, or kNotTurned

@@ -13,7 +13,6 @@ namespace {
 /// Relative slack on every bound. A ray-sphere discriminant loses half of a double's digits to
 /// cancellation, and this covers the square root of the rounding unit tenfold.
 constexpr double kSlack = 1e-7;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Interval {
     double low, high;
@@ -68,7 +67,7 @@ double slice_extent(const S& shape, const Vec4& e, const Vec4& n, const SliceRan
     // l = u / (1 - u^2): all numbers for u within +-1. The width left, 1e-3, makes the bound
     // too large by at most about as much of the body.
     constexpr int kSteps = 16;
-    constexpr double kGolden = 0.6180339887498949;
+    constexpr double kGoldenRatio = 0.6180339887498949;
     double best = kInfinite;
     const auto bound = [&](double u) {
         const double l = u / (1 - u * u);
@@ -78,15 +77,15 @@ double slice_extent(const S& shape, const Vec4& e, const Vec4& n, const SliceRan
         return value;
     };
     double a = -1, b = 1;
-    double u = b - kGolden * (b - a), v = a + kGolden * (b - a);
+    double u = b - kGoldenRatio * (b - a), v = a + kGoldenRatio * (b - a);
     double at_u = bound(u), at_v = bound(v);
     for (int i = 0; i < kSteps; ++i) {
         if (at_u < at_v) {
             b = v, v = u, at_v = at_u;
-            u = b - kGolden * (b - a), at_u = bound(u);
+            u = b - kGoldenRatio * (b - a), at_u = bound(u);
         } else {
             a = u, u = v, at_u = at_v;
-            v = a + kGolden * (b - a), at_v = bound(v);
+            v = a + kGoldenRatio * (b - a), at_v = bound(v);
         }
     }
     return best;

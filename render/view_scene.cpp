@@ -1,25 +1,24 @@
 #include "render/view_scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <cmath>
 #include <limits>
 
 #include "core/error.hpp"
+#include "render/embree.hpp"
 
 namespace tesserae::render {
 namespace {
 
 /// Part of the lengths involved by which bounds are widened: several times the rounding of a double
 /// to a float, of boxes, ray origins and directions, which Embree knows nothing of.
-constexpr double kWiden = 5e-7;
+constexpr double kWidenFloats = 5e-7;
 
 /// A ray under way, with Embree's context at its head, which is all that Embree hands to callbacks.
 struct Query {
-    RTCIntersectContext context;
-    const PlacedBodies* placed;
-    const Settings* settings;
-    FrameStats* stats;
+    RayContext context = ray_context();
+    const PlacedBodies* placed = nullptr;
+    const Settings* settings = nullptr;
+    FrameStats* stats = nullptr;
     Vec4 origin, direction;  ///< world axes, about the camera
     Hit hit;
     double limit;
@@ -80,7 +79,7 @@ ViewScene::EmbreeScene::EmbreeScene(std::span<const SliceBounds> bounds, double 
 void ViewScene::EmbreeScene::bounds_of(const RTCBoundsFunctionArguments* args) {
     const auto& embree = *static_cast<const EmbreeScene*>(args->geometryUserPtr);
     const SliceBounds& s = embree.slice[args->primID];
-    const double widen = kWiden * (s.centre.lpNorm<1>() + s.radius + embree.reach);
+    const double widen = kWidenFloats * (s.centre.lpNorm<1>() + s.radius + embree.reach);
     const Eigen::Vector3f low = (s.low.array() - widen).matrix().cast<float>();
     const Eigen::Vector3f high = (s.high.array() + widen).matrix().cast<float>();
     RTCBounds& b = *args->bounds_o;
@@ -103,7 +102,7 @@ ViewScene::ViewScene(const PlacedBodies& placed, const Camera& camera, const Set
     : placed_(placed), camera_(camera), settings_(settings), range_(range), reach_(reach) {
     // A ray from the side reaches as far as one from the camera that may go farther.
     for (const SliceBounds& s : slice_bounds(placed, camera, settings.max_distance + reach, range))
-        if (s.radius < kMiss)
+        if (s.radius < kInfinite)
             slice_.push_back(s);
         else
             unbounded_.push_back(s.body);
@@ -116,7 +115,6 @@ void ViewScene::nearest(std::span<const ViewRay> rays, std::span<Hit> hits,
                         FrameStats& stats) const {
     TSR_ASSERT(rays.size() == hits.size());
     Query query;
-    rtcInitIntersectContext(&query.context);
     query.placed = &placed_, query.settings = &settings_, query.stats = &stats;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const ViewRay& r = rays[i];
@@ -139,7 +137,7 @@ void ViewScene::nearest(std::span<const ViewRay> rays, std::span<Hit> hits,
             ray.ray.tfar = query.reach();
             ray.ray.mask = ~0u;
             ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            rtcIntersect1(embree_->scene.get(), &query.context, &ray);
+            render::intersect(embree_->scene.get(), query.context, ray);
         }
         hits[i] = query.hit;
     }

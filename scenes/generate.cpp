@@ -59,7 +59,7 @@ std::uint64_t cube_side(std::uint64_t count) {
     return std::max<std::uint64_t>(n, 1);
 }
 
-constexpr const char* kSphere = "shape = \"hypersphere\"\nradius = 0.5\n";
+constexpr const char* kBallText = "shape = \"hypersphere\"\nradius = 0.5\n";
 constexpr const char* kPlainBox = "shape = \"hyperbox\"\nsize = [1, 1, 1, 1]\n";
 constexpr const char* kUnevenBox =
     "shape = \"hyperbox\"\nsize = [0.9, 0.5, 0.7, 0.6]\n"
@@ -167,7 +167,7 @@ std::string gas(std::uint64_t bodies) {
     for (int axis = 0; axis < 4; ++axis)
         for (const double side : {1.0, -1.0}) text += wall(axis, side, 0.5 * width + 1, kElastic);
     const auto body = [&](const char* velocity) {
-        return fmt::format("{}velocity = {}\n{}", kSphere, velocity, kElastic);
+        return fmt::format("{}velocity = {}\n{}", kBallText, velocity, kElastic);
     };
     text += lattices(grid, bodies - half, 0.05, body("[3, 1, -2, 2]"));
     grid.corner.array() += 0.5 * kSpacing;
@@ -219,7 +219,7 @@ std::string generated_scene(std::string_view name, std::uint64_t bodies) {
     TSR_ASSERT(bodies > 0);
     const std::string head = fmt::format("# tesserae generate {} --bodies {}\n\n", name, bodies);
     if (name == "gas") return head + gas(bodies);
-    if (name == "pile") return head + heap(name, bodies, kSphere);
+    if (name == "pile") return head + heap(name, bodies, kBallText);
     if (name == "boxes") return head + heap(name, bodies, kUnevenBox);
     if (name == "stacks") return head + stacks(bodies);
     TSR_ASSERT(name == "pyramid");

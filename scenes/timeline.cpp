@@ -9,7 +9,7 @@
 namespace tesserae::scenes {
 namespace {
 
-constexpr double kMaxSteps = 9007199254740992.0;  // 2^53: a step's number is exact as a double
+constexpr double kLastStep = 9007199254740992.0;  // 2^53: a step's number is exact as a double
 constexpr int kMaxFrames = 10'000'000;
 
 /// A frame whose instant is this close to a step (in steps, relative) is at that step: what
@@ -35,7 +35,7 @@ int parse_number(const std::string& text, const char*& at, const char* end) {
 std::uint64_t step_count(const Scene& scene) {
     if (!scene.physics) return 0;
     const double steps = std::round(scene.physics->duration * scene.physics->steps_per_second);
-    if (!(steps < kMaxSteps))
+    if (!(steps < kLastStep))
         throw InputError(
             fmt::format("{}: [physics]: duration x steps_per_second is {}: expected "
                         "fewer than 2^53 steps",

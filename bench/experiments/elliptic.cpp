@@ -38,7 +38,7 @@ double quarter_period(double complement) {
         b = std::sqrt(a * b);
         a = mean;
     }
-    return 0.5 * kPi / a;
+    return 0.5 * pi / a;
 }
 
 }  // namespace tesserae::bench

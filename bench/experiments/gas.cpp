@@ -53,14 +53,13 @@ Bodies gas_in_box() {
 /// and A. Baram, 1982), is taken without the walls' part; the one after it is below 0.1 %.
 double exact_compressibility() {
     const double a = kInside, d = 2 * kBall, n = static_cast<double>(kCount);
-    const double moments[5] = {kPi * kPi * std::pow(d, 4) / 2, 32 * kPi * std::pow(d, 5) / 15,
-                               kPi * std::pow(d, 6), 64 * std::pow(d, 7) / 105,
-                               std::pow(d, 8) / 24};
+    const double moments[5] = {pi * pi * std::pow(d, 4) / 2, 32 * pi * std::pow(d, 5) / 15,
+                               pi * std::pow(d, 6), 64 * std::pow(d, 7) / 105, std::pow(d, 8) / 24};
     double slope = 0;  // a dX/da
     for (int k = 0; k < 5; ++k)
         slope += (k % 2 ? 1 : -1) * (4 + k) * moments[k] / std::pow(a, 4 + k);
-    const double filled = kPi * kPi * std::pow(d, 4) / 4 * n / std::pow(a, 4);  // B2 N/V
-    const double third = 4.0 / 3 - 3 * std::sqrt(3.0) / (2 * kPi);
+    const double filled = pi * pi * std::pow(d, 4) / 4 * n / std::pow(a, 4);  // B2 N/V
+    const double third = 4.0 / 3 - 3 * std::sqrt(3.0) / (2 * pi);
     return 1 - (n - 1) / 8 * slope + third * filled * filled;
 }
 

@@ -118,7 +118,7 @@ Experiment sliding_to_rolling(const Knobs& knobs) {
 
 /// Rolls at 3/4 g sin(angle), since mu > tan(angle) / 4.
 Experiment rolling_down(const Knobs& knobs) {
-    const double angle = 20 * kPi / 180;
+    const double angle = 20 * pi / 180;
     const auto settings =
         settings_of(1, knobs, {kGravity * std::sin(angle), -kGravity * std::cos(angle), 0, 0});
     Bodies bodies = floor_of(0.6, 0);

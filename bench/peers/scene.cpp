@@ -16,8 +16,8 @@ PeerKind sphere_kind(int dimension, double radius) {
     PeerKind kind;
     kind.radius = radius;
     kind.sides.setConstant(2 * radius);
-    const double volume = dimension == 4 ? 0.5 * kPi * kPi * std::pow(radius, 4)
-                                         : 4.0 / 3 * kPi * std::pow(radius, 3);
+    const double volume =
+        dimension == 4 ? 0.5 * pi * pi * std::pow(radius, 4) : 4.0 / 3 * pi * std::pow(radius, 3);
     kind.mass = kDensity * volume;
     return kind;
 }

@@ -21,6 +21,9 @@ inline Vec4 assembled(double x, double y, double z, double w) {
     return v;
 }
 
+/// -1 for negative numbers, else 1: also for both zeros.
+inline double sign_of(double x) { return x < 0 ? -1 : 1; }
+
 /// Whether a sum of squares lies where none overflows, and one that underflows is below 2^-53 of
 /// it.
 inline bool is_plain_square(double sum) { return sum > 1e-290 && sum < 1e300; }

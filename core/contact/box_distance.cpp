@@ -31,9 +31,9 @@ struct Basis {
 };
 
 /// b - a as a function of eight coordinates: those of a's point, then those of b's.
-class Closest {
+class ClosestOffset {
   public:
-    Closest(const BoxPair& pair, const Vec4& start) : offset_(pair.offset.cast<Real>()) {
+    ClosestOffset(const BoxPair& pair, const Vec4& start) : offset_(pair.offset.cast<Real>()) {
         for (int i = 0; i < 4; ++i) {
             motion_[i] = -Wide::Unit(i);
             motion_[4 + i] = pair.rotation.col(i).cast<Real>();
@@ -160,7 +160,7 @@ class Closest {
 }  // namespace
 
 BoxWitness closest_points(const BoxPair& pair, const Vec4& normal) {
-    Closest closest(pair, normal);
+    ClosestOffset closest(pair, normal);
     closest.solve();
     return closest.witness();
 }

@@ -13,7 +13,7 @@ using Lanes = Eigen::Array4d;
 /// Axes other than each.
 constexpr int kOthers[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
 
-double sign_of(int corner, int k) { return (corner >> k & 1) != 0 ? 1 : -1; }
+double sign_in_cell(int corner, int k) { return (corner >> k & 1) != 0 ? 1 : -1; }
 
 /// What is known of a point in both solids' terms.
 struct Place {
@@ -59,7 +59,7 @@ struct Corners {
         for (int corner = 0; corner < 8; ++corner) {
             face[corner][axis] = side;
             for (int k = 0; k < 3; ++k)
-                face[corner][axes[k]] = static_cast<signed char>(sign_of(corner, k));
+                face[corner][axes[k]] = static_cast<signed char>(sign_in_cell(corner, k));
         }
     }
     /// The edges that have a part inside and a part outside, as far as their ends tell: bit 8 k +

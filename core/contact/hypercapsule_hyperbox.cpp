@@ -17,8 +17,6 @@ constexpr double kCellPart = 0.9;
 constexpr double kBorder = 1e-10;
 constexpr std::uint32_t kBetween = 10;
 
-double sign_of(double x) { return x < 0 ? -1 : 1; }
-
 /// The core and the box, in the box's frame.
 struct Relation {
     CapsuleCore core;

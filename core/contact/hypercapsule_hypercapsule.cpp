@@ -43,7 +43,7 @@ struct Cores {
     double length() const { return stable_norm(between) + a.half + b.half; }
 };
 
-struct Closest {
+struct ClosestPoints {
     double s, t;  ///< on a's and b's core
     Vec4 gap;     ///< from a's point to b's
     bool inside;  ///< neither is an end
@@ -53,7 +53,7 @@ struct Closest {
 /// Detection, 2005, section 5.1.9). Unlike there the optimum comes from the axis's part across the
 /// other, which loses nothing for small angles; and a gap that has to be orthogonal to a core is
 /// made so, since a small one is mostly rounding otherwise.
-Closest closest_points(const Cores& cores) {
+ClosestPoints closest_points(const Cores& cores) {
     const CapsuleCore &a = cores.a, &b = cores.b;
     const Vec4 apart = cores.between - cores.centre_b * a.axis;
     double t = cores.sine2 > 0 ? -cores.across.dot(apart) / cores.sine2 : 0;
@@ -99,7 +99,7 @@ void contacts_between(const Hypercapsule& a, const Pose& pose_a, const Hypercaps
     if (!((pose_b.position - pose_a.position).squaredNorm() <= reach * reach)) return;
 
     const Cores cores(a, pose_a, b, pose_b);
-    const Closest closest = closest_points(cores);
+    const ClosestPoints closest = closest_points(cores);
     const double distance = stable_norm(closest.gap);
     if (!(distance - radii <= margin)) return;
     const Vec4 normal = distance > kCoreRounding * cores.length()

@@ -34,7 +34,7 @@ Lanes squared_norms(const Coordinates& v) {
     return v[0].square() + v[1].square() + v[2].square() + v[3].square();
 }
 
-struct Four {
+struct FourPoints {
     Coordinates place;     ///< relative to the deepest, seen along the normal
     Coordinates residual;  ///< what is left of it orthogonal to the dimensions that are spanned
     Lanes nearest;         ///< squared distance to the kept points
@@ -69,12 +69,12 @@ class Reduction {
         for (std::size_t i = 0; i < 4 * fours_; ++i) {
             const Vec4 place =
                 i < points.size() ? Vec4(points[order_[i]].point - deepest) : Vec4(Vec4::Zero());
-            Four& four = four_[i / 4];
+            FourPoints& four = four_[i / 4];
             for (int k = 0; k < 4; ++k) four.place[k][i % 4] = place[k];
             four.most[i % 4] = i < points.size() ? kInfinity : -1;
         }
         for (std::size_t f = 0; f < fours_; ++f) {
-            Four& four = four_[f];
+            FourPoints& four = four_[f];
             remove_along(normal, four.place);
             four.residual = four.place;
             four.nearest = squared_norms(four.place);
@@ -84,18 +84,18 @@ class Reduction {
 
     /// The points to keep.
     std::array<ContactPoint, kManifoldPoints> run() {
-        const auto off_span = [](const Four& four) { return squared_norms(four.residual); };
+        const auto off_span = [](const FourPoints& four) { return squared_norms(four.residual); };
         double length = 0;
         for (int dimension = 0; dimension < 3; ++dimension) {
             const double most = farthest(off_span);
             if (dimension == 0) length = most;
             if (!(most > kFlat * length)) break;
             keep(first_of(most));
-            const Vec4 direction = one_of(&Four::residual, kept_[count_ - 1]).normalized();
+            const Vec4 direction = one_of(&FourPoints::residual, kept_[count_ - 1]).normalized();
             for (std::size_t f = 0; f < fours_; ++f) remove_along(direction, four_[f].residual);
         }
         while (count_ < kManifoldPoints)
-            keep(first_of(farthest([](const Four& four) { return four.nearest; })));
+            keep(first_of(farthest([](const FourPoints& four) { return four.nearest; })));
 
         std::array<ContactPoint, kManifoldPoints> result;
         for (std::size_t i = 0; i < count_; ++i) result[i] = points_[order_[kept_[i]]];
@@ -119,14 +119,14 @@ class Reduction {
         while (i + 1 < points_.size() && !(measured_[i / 4][i % 4] >= enough)) ++i;
         return i;
     }
-    Vec4 one_of(Coordinates Four::*which, std::size_t i) const {
+    Vec4 one_of(Coordinates FourPoints::*which, std::size_t i) const {
         const Coordinates& v = four_[i / 4].*which;
         return {v[0][i % 4], v[1][i % 4], v[2][i % 4], v[3][i % 4]};
     }
     void keep(std::size_t i) {
         kept_[count_++] = i;
         four_[i / 4].most[i % 4] = -1;
-        const Vec4 kept = one_of(&Four::place, i);
+        const Vec4 kept = one_of(&FourPoints::place, i);
         for (std::size_t f = 0; f < fours_; ++f) {
             Coordinates between = four_[f].place;
             for (int k = 0; k < 4; ++k) between[k] -= kept[k];
@@ -137,7 +137,7 @@ class Reduction {
     std::span<const ContactPoint> points_;
     std::size_t fours_;
     std::array<std::uint8_t, kManifoldInput> order_;  ///< of the points, the deepest first
-    std::array<Four, kManifoldInput / 4> four_;
+    std::array<FourPoints, kManifoldInput / 4> four_;
     std::array<Lanes, kManifoldInput / 4> measured_;
     std::array<std::size_t, kManifoldPoints> kept_{};
     std::size_t count_ = 0;

@@ -19,8 +19,6 @@ Four four_of(const Vec4& v) {
     return four;
 }
 
-double sign_of(double x) { return x < 0 ? -1 : 1; }
-
 /// All four at once: one by one they would be stored, and to read them back as one vector stalls.
 Vec4 signs_of(const Vec4& v) {
     Four four = four_of(v);

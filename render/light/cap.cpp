@@ -7,7 +7,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// x - sin x. Below 1 the alternating series: its first left out term is under 1e-17 of the first.
 double minus_sine(double x) {
@@ -25,7 +25,7 @@ double cap_part(double angle) { return 0.5 * minus_sine(2 * angle); }
 
 Eigen::Vector3d uniform_sphere(double u, double v) {
     const double z = 1 - 2 * u, across = std::sqrt(std::max(0.0, 1 - z * z));
-    return {across * std::cos(2 * kPi * v), across * std::sin(2 * kPi * v), z};
+    return {across * std::cos(2 * pi * v), across * std::sin(2 * pi * v), z};
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ Vec4 cosine_direction(const Uniform3& u) {
     return {p.x(), p.y(), p.z(), std::sqrt(std::max(0.0, 1 - p.squaredNorm()))};
 }
 
-double cap_solid_angle(double angle) { return 2 * kPi * cap_part(angle); }
+double cap_solid_angle(double angle) { return 2 * pi * cap_part(angle); }
 
 Vec4 cap_direction(double angle, const Uniform3& u) {
     const double part = u[0] * cap_part(angle);
@@ -86,12 +86,12 @@ Vec4 cap_direction(double angle, const Uniform3& u) {
 double cap_irradiance(double angle, double altitude) {
     if (altitude <= -angle) return 0;
     const double sine = std::sin(angle);
-    if (altitude >= angle) return 4 * kPi / 3 * sine * sine * sine * std::sin(altitude);
+    if (altitude >= angle) return 4 * pi / 3 * sine * sine * sine * std::sin(altitude);
     // e = 1 - s and d = 1 - a of the docstring.
     const double above = std::sin(0.5 * (altitude + angle));
     const double e = 2 * above * above;
     const double d = 2 * above * std::sin(0.5 * (angle - altitude)) / std::cos(altitude);
-    return kPi / 3 * e * (e + (2 - e) * d);
+    return pi / 3 * e * (e + (2 - e) * d);
 }
 
 }  // namespace tesserae::render

@@ -10,7 +10,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 }  // namespace
 
@@ -34,14 +34,14 @@ LightAt LightSet::at(const PointLight& light, const Vec4& point, const Vec4& nor
     LightAt at = {{to / distance, 0, {0, 1}, distance}, Color::Zero()};
     const double cosine = normal.dot(at.disc.toward);
     if (cosine > 0)
-        at.irradiance = light.flux * (cosine / (2 * kPi * kPi * distance * distance * distance));
+        at.irradiance = light.flux * (cosine / (2 * pi * pi * distance * distance * distance));
     return at;
 }
 
 LightAt LightSet::at(const SphereLight& light, const Vec4& point, const Vec4& normal) {
     const Vec4 to = light.position - point;
     const double distance = to.norm();
-    if (distance <= light.radius) return {{normal, 0, {0, 1}, 0}, light.radiance * (4 * kPi / 3)};
+    if (distance <= light.radius) return {{normal, 0, {0, 1}, 0}, light.radiance * (4 * pi / 3)};
     const double sine = light.radius / distance;
     const double cosine = std::sqrt((1 - sine) * (1 + sine));
     LightAt at = {{to / distance, std::asin(sine), {sine, cosine}, distance * cosine},

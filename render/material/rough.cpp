@@ -7,8 +7,8 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kHemisphere = 4 * kPi / 3;  ///< integral of the cosine
+using std::numbers::pi;
+constexpr double kHemisphere = 4 * pi / 3;  ///< integral of the cosine
 
 /// E: the mean over the mirrors that are seen of what is not masked on the way back. For a
 /// direction in the plane of the first and the last axis it does not matter where points of the
@@ -19,9 +19,9 @@ double single_part_by_quadrature(const Microfacet& facets, double cosine) {
     const double alone = facets.visible_part(out);
     double sum = 0, all = 0;
     for (int i = 0; i < kSteps; ++i) {
-        const double b = 0.5 * kPi * (i + 0.5) / kSteps, rim = std::cos(b);
+        const double b = 0.5 * pi * (i + 0.5) / kSteps, rim = std::cos(b);
         for (int j = 0; j < kSteps; ++j) {
-            const double a = kPi * ((j + 0.5) / kSteps - 0.5);
+            const double a = pi * ((j + 0.5) / kSteps - 0.5);
             const double weight = std::sin(b) * rim * rim * std::cos(a);
             all += weight;
             const Vec4 mirror = facets.visible_normal(out, {rim * std::sin(a), std::sin(b), 0});
@@ -43,10 +43,10 @@ RoughReflection::RoughReflection(double roughness) : facets_(roughness) {
     constexpr int kSteps = 1000;
     mean_lost_ = 0;
     for (int i = 0; i < kSteps; ++i) {
-        const double angle = 0.5 * kPi * (i + 0.5) / kSteps, sine = std::sin(angle);
+        const double angle = 0.5 * pi * (i + 0.5) / kSteps, sine = std::sin(angle);
         mean_lost_ += lost_part(std::cos(angle)) * sine * sine * std::cos(angle);
     }
-    mean_lost_ *= 1.5 * kPi / kSteps;
+    mean_lost_ *= 1.5 * pi / kSteps;
 }
 
 double RoughReflection::lost_part(double cosine) const {

@@ -272,6 +272,11 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
 
 H5FD_class_t driver_class() {
     H5FD_class_t driver = {};
+#ifdef H5FD_CLASS_VERSION
+    // HDF5 1.14 wants these; 256 to 511 are for drivers that are not registered with it.
+    driver.version = H5FD_CLASS_VERSION;
+    driver.value = H5_VFD_RESERVED;
+#endif
     driver.name = "tesserae_ordered";
     driver.maxaddr = kMostAddress;
     driver.fc_degree = H5F_CLOSE_STRONG;

@@ -19,7 +19,7 @@ namespace {
 
 using namespace tesserae::testing;
 
-constexpr double kStep = 1.0 / 120;
+constexpr double kSlowStep = 1.0 / 120;
 
 Vec4 random_vector(std::mt19937_64& engine, double half_side) {
     std::uniform_real_distribution<> along(-half_side, half_side);
@@ -51,7 +51,7 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
         constexpr int kSteps = 120;
         std::size_t pairs = 0;
         for (int i = 0; i < kSteps; ++i) {
-            begin_step(simulation, step, kStep);
+            begin_step(simulation, step, kSlowStep);
             for (BodyId id = 0; id < bodies.size(); ++id)
                 if (engine() % 4 == 0 && simulation.type_of(id).movable) step.asleep[id] = id;
             advance_first_half(simulation, step, all);
@@ -63,7 +63,7 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
             pairs += found.size();
 
             Bodies& b = simulation.bodies;
-            for (BodyId id = 2; id < b.size(); ++id) b.position[id] += kStep * b.velocity[id];
+            for (BodyId id = 2; id < b.size(); ++id) b.position[id] += kSlowStep * b.velocity[id];
             const auto chosen = static_cast<BodyId>(2 + engine() % (b.size() - 2));
             if (i % 10 == 5) b.velocity[chosen] = random_vector(engine, speed);
             if (i % 30 == 20) b.position[chosen] = random_vector(engine, 2);
@@ -84,11 +84,11 @@ void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, i
     std::mt19937_64 engine(13);
     std::uint64_t contacts = 0;
     for (int i = 0; i < steps; ++i) {
-        contacts += serial.step(kStep).contacts;
+        contacts += serial.step(kSlowStep).contacts;
         threads.run([&] {
-            keeping.step(kStep);
+            keeping.step(kSlowStep);
             if (engine() % 3 == 0) forgetting.forget_hints();
-            forgetting.step(kStep);
+            forgetting.step(kSlowStep);
         });
         for (const ParallelWorld* world : {&keeping, &forgetting})
             ASSERT_EQ(difference_of(serial, *world), "") << name << ", step " << i;
@@ -124,7 +124,7 @@ TEST(KeptPairs, ChangeNoBitWhenBodiesFallAsleepAndWake) {
     World world(bodies, settings);
     std::uint64_t most = 0, woken = 0;
     for (int i = 0; i < 240; ++i) {
-        const std::uint64_t asleep = world.step(kStep).asleep;
+        const std::uint64_t asleep = world.step(kSlowStep).asleep;
         most = std::max(most, asleep);
         woken = std::max(woken, most - asleep);
     }

@@ -17,12 +17,12 @@ namespace {
 
 using namespace tesserae::testing;
 
-constexpr double kStep = 1.0 / 240;
+constexpr double kSearchStep = 1.0 / 240;
 
 /// Everything that comes before the search for pairs.
 StepData prepared(const Simulation& simulation) {
     StepData step;
-    begin_step(simulation, step, kStep);
+    begin_step(simulation, step, kSearchStep);
     const Range all{0, simulation.bodies.size()};
     advance_first_half(simulation, step, all);
     integrate_velocities(simulation, step, all);

@@ -8,7 +8,7 @@ namespace tesserae::render {
 namespace {
 
 /// Bodies of every size and shape, some of glass, in a cloud where some overlap.
-TestScene cloud(Random& random, int count) {
+TestScene glass_cloud(Random& random, int count) {
     TestScene scene;
     scene.settings.intersector = Intersector::kAnalytic;
     scene.materials.resize(2);
@@ -54,7 +54,7 @@ TEST(GlassBodies, ListsLoseNoBody) {
     Random random(541);
     int exits = 0, hits = 0, beyond = 0;
     for (int round = 0; round < 20; ++round) {
-        const Placed p(cloud(random, 60));
+        const Placed p(glass_cloud(random, 60));
         for (int i = 0; i < 4000; ++i) {
             const Vec4 origin = random_vector(random, 4), direction = random_direction(random);
             const std::uint32_t medium = p.medium_at(origin, GlassBodies::kNone);
@@ -97,7 +97,7 @@ TEST(GlassBodies, ListsLoseNoBody) {
 
 TEST(GlassBodies, EmptySpaceHasIndexOne) {
     Random random(542);
-    const Placed p(cloud(random, 9));
+    const Placed p(glass_cloud(random, 9));
     EXPECT_EQ(p.glass.refractive_index(GlassBodies::kNone), 1);
     for (std::uint32_t b = 0; b < p.placed.bodies.size(); ++b)
         if (p.is_glass(b)) {

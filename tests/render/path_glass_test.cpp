@@ -10,7 +10,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Path, GlassKeepsTheFieldInsideAtTheCubeOfItsIndex) {
     // A ray that goes in shows, at the black ball in the glass, nothing; at a white one all: with
@@ -87,7 +87,7 @@ TEST(Path, GlassBallBendsByTwiceTheDifferenceOfAngles) {
         const double in = std::asin(h), inside = std::asin(h / 1.5), turn = 2 * (in - inside);
         // Where it enters seen from the centre: at angle pi - in from the axis; where it leaves:
         // on by pi - 2 inside.
-        const double leave = (kPi - in) - (kPi - 2 * inside);
+        const double leave = (pi - in) - (pi - 2 * inside);
         const Vec4 exit =
             scene.bodies.position[0] + std::cos(leave) * Vec4::UnitZ() + std::sin(leave) * up;
         const Vec4 way = std::cos(turn) * Vec4::UnitZ() - std::sin(turn) * up;

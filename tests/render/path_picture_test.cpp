@@ -38,9 +38,9 @@ TestScene busy_scene(Integrator integrator) {
     return scene;
 }
 
-class EachIntegrator : public testing::TestWithParam<Integrator> {};
+class EachIntegrator : public ::testing::TestWithParam<Integrator> {};
 INSTANTIATE_TEST_SUITE_P(Picture, EachIntegrator,
-                         testing::Values(Integrator::kDirect, Integrator::kPath));
+                         ::testing::Values(Integrator::kDirect, Integrator::kPath));
 
 TEST_P(EachIntegrator, HasTheSameBytesAtAnyThreadCount) {
     const TestScene scene = busy_scene(GetParam());

@@ -12,7 +12,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Path, LoneConvexBodyInAWhiteFurnaceShowsItsAlbedo) {
     // A diffuse convex body sees nothing of itself: every sample is exact, whatever the bounces.
@@ -76,7 +76,7 @@ TEST(Path, RoughBodyInAWhiteFurnaceShowsItsDirectionalAlbedo) {
             Vec4 in = random_direction(random);
             in[3] = std::abs(in[3]);
             albedo.add(rough.brdf(scene.materials[0].albedo, frame.to_local(-direction), in) *
-                       (kPi * kPi * in[3]));
+                       (pi * pi * in[3]));
         }
         const Mean found = mean_radiance(TracedScene(scene), direction, 20000);
         EXPECT_NEAR(found.mean()[0], 1, 5 * found.sigma()[0] + 1e-3) << roughness;
@@ -157,9 +157,9 @@ Color reference(const TracedScene& t, const Vec4& origin, const Vec4& direction,
     if (!hit) {
         Color light = t.scene.lights.sky;
         for (const Sun& sun : t.scene.lights.suns) {
-            const double angle = sun.angle * kPi / 180;
+            const double angle = sun.angle * pi / 180;
             if (scattered > 0 && -sun.direction.dot(direction) > std::cos(angle))
-                light += sun.irradiance / (4 * kPi / 3 * std::pow(std::sin(angle), 3));
+                light += sun.irradiance / (4 * pi / 3 * std::pow(std::sin(angle), 3));
         }
         return light;
     }
@@ -167,12 +167,12 @@ Color reference(const TracedScene& t, const Vec4& origin, const Vec4& direction,
     if (scattered > t.scene.settings.bounces) return s.material->emission;
     Vec4 next = random_direction(random);
     if (next.dot(s.normal) < 0) next = -next;
-    Color brdf = s.albedo * (3 / (4 * kPi));
+    Color brdf = s.albedo * (3 / (4 * pi));
     if (s.material->kind == MaterialKind::kRough) {
         const TangentFrame frame(s.normal);
         brdf = s.rough->brdf(s.albedo, frame.to_local(-direction), frame.to_local(next));
     }
-    return s.material->emission + brdf * next.dot(s.normal) * kPi * kPi *
+    return s.material->emission + brdf * next.dot(s.normal) * pi * pi *
                                       reference(t, s.point, next, s.body, scattered + 1, random);
 }
 
@@ -281,7 +281,7 @@ TEST(Path, MirrorsShowWhatStandsBeforeThem) {
         sun.direction = -up;
         sun.angle = 5;
         scene.lights.suns = {sun};
-        const double disc = 1 / (4 * kPi / 3 * std::pow(std::sin(5 * kPi / 180), 3));
+        const double disc = 1 / (4 * pi / 3 * std::pow(std::sin(5 * pi / 180), 3));
         EXPECT_LT((seen() - (2 + disc) * tint).abs().maxCoeff(), 1e-13 * disc);
         scene.lights.spheres = {{Vec4(0, 2, 0, 4), 0.5, Color::Constant(7)}};
         EXPECT_LT((seen() - 7 * tint).abs().maxCoeff(), 1e-13);

@@ -14,8 +14,6 @@
 namespace tesserae::render {
 namespace {
 
-constexpr std::uint32_t kNoBody = RayScene::kNoBody;
-
 /// What RayScene::nearest promises, by trying every body.
 Hit nearest_of_all(const PlacedBodies& placed, const Vec4& origin, const Vec4& direction,
                    double limit, std::uint32_t on, const Settings& settings) {
@@ -83,17 +81,6 @@ Vec4 any_direction(Random& random) {
     return d.normalized();
 }
 
-TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest) {
-    Random random(seed);
-    TestScene scene;
-    for (int i = 0; i < count; ++i) {
-        const double size = std::exp(uniform(random, std::log(least), std::log(largest)));
-        scene.add(random_shape(random, i % 3, size), random_vector(random, spread),
-                  random_rotor(random));
-    }
-    return scene;
-}
-
 void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double spread, Rays& count) {
     Random random(seed);
     const PlacedBodies placed = place_bodies(scene.picture(), scene.camera.position);
@@ -115,7 +102,7 @@ void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double sp
             }
             const double limit = i % 3 == 0 ? uniform(random, 0, spread) : kMiss;
             const std::uint32_t on =
-                i % 5 == 0 ? static_cast<std::uint32_t>(random() % bodies) : kNoBody;
+                i % 5 == 0 ? static_cast<std::uint32_t>(random() % bodies) : RayScene::kNoBody;
             compare(scene, placed, rays, origin, direction, limit, on, count);
             if (::testing::Test::HasFatalFailure()) return;
         }
@@ -191,7 +178,7 @@ TEST(RayScene, BodiesInOnePlaceAndOnAGrid) {
         for (int k = 0; k < 4; ++k) origin[k] = 0.5 * static_cast<double>(random() % 13) - 1;
         const Vec4 direction = i % 2 == 0 ? any_direction(random)
                                           : Vec4((i % 4 == 1 ? -1 : 1) * Vec4::Unit(random() % 4));
-        compare(grid, placed, rays, origin, direction, kMiss, kNoBody, count);
+        compare(grid, placed, rays, origin, direction, kMiss, RayScene::kNoBody, count);
         if (HasFatalFailure()) return;
     }
     compare_side_by_side(rays, count);
@@ -209,9 +196,10 @@ TEST(RayScene, NoBodiesOneBodyOnlyPlanes) {
         FrameStats stats;
         const Hit hit = rays.nearest({Vec4::Zero(), Vec4::UnitZ()}, stats);
         EXPECT_EQ(hit.distance, kind == 0 ? kMiss : 4);
-        EXPECT_EQ(rays.is_blocked(Vec4::Zero(), Vec4::UnitZ(), kMiss, kNoBody, stats), kind != 0);
+        EXPECT_EQ(rays.is_blocked(Vec4::Zero(), Vec4::UnitZ(), kMiss, RayScene::kNoBody, stats),
+                  kind != 0);
         EXPECT_FALSE(rays.nearest({Vec4::Zero(), -Vec4::UnitZ()}, stats));
-        EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), kNoBody, 3.9}, stats));
+        EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), RayScene::kNoBody, 3.9}, stats));
         if (kind != 0) {
             EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), 0}, stats));
         }

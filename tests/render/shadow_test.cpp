@@ -6,13 +6,13 @@
 #include <numbers>
 
 #include "render/camera.hpp"
+#include "render/ray_scene.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::uint32_t kNoBody = ~std::uint32_t{0};
 
 Sun sun_at(const Vec4& toward, double angle_degrees) {
     Sun sun;
@@ -168,9 +168,9 @@ TEST(SunVisibility, BehindAPlaneMatchesRays) {
             const double height = x * angle * kDegree;
             const Vec4 toward(0.6 * std::cos(height), std::sin(height), 0, 0.8 * std::cos(height));
             FrameStats stats;
-            const double visible =
-                Shadows(placed, BodyTree(placed))
-                    .visibility(sun_disc(sun_at(toward, angle)), Vec4::Zero(), kNoBody, stats);
+            const double visible = Shadows(placed, BodyTree(placed))
+                                       .visibility(sun_disc(sun_at(toward, angle)), Vec4::Zero(),
+                                                   RayScene::kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle * kDegree, kCount,
                                                 [](const Vec4& d) { return d.y() < 0; });
             EXPECT_NEAR(visible, rays, 5 * 0.5 / std::sqrt(kCount) + std::pow(angle * kDegree, 2))
@@ -195,9 +195,9 @@ TEST(SunVisibility, BehindALargeSphereMatchesRays) {
             scene.add(Hypersphere{radius}, centre);
             const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
             FrameStats stats;
-            const double visible =
-                Shadows(placed, BodyTree(placed))
-                    .visibility(sun_disc(sun_at(toward, 2)), Vec4::Zero(), kNoBody, stats);
+            const double visible = Shadows(placed, BodyTree(placed))
+                                       .visibility(sun_disc(sun_at(toward, 2)), Vec4::Zero(),
+                                                   RayScene::kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle, kCount, [&](const Vec4& d) {
                 return d.w() > std::cos(alpha * kDegree);
             });
@@ -214,7 +214,7 @@ TEST(SunVisibility, OfASmallSphereIsItsRimsFormula) {
     FrameStats stats;
     const double visible =
         Shadows(placed, BodyTree(placed))
-            .visibility(sun_disc(sun_at(Vec4::UnitW(), 2)), Vec4::Zero(), kNoBody, stats);
+            .visibility(sun_disc(sun_at(Vec4::UnitW(), 2)), Vec4::Zero(), RayScene::kNoBody, stats);
     EXPECT_NEAR(visible, visible_part(-std::asin(0.01) / (2 * kDegree)), 1e-12);
 }
 
@@ -327,13 +327,15 @@ TEST(Shadows, SharedSurfacesAreLit) {
         for (double angle : {0.0, 2.0}) {
             // A soft sun is whole from its own half-angle above the surface on.
             if (toward.dot(normal) < std::sin(2.1 * kDegree)) continue;
-            EXPECT_EQ(Shadows(placed, BodyTree(placed))
-                          .visibility(sun_disc(sun_at(toward, angle)), point, kNoBody, stats),
-                      1)
+            EXPECT_EQ(
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(toward, angle)), point, RayScene::kNoBody, stats),
+                1)
                 << i;
-            EXPECT_EQ(Shadows(placed, BodyTree(placed))
-                          .visibility(sun_disc(sun_at(-toward, angle)), point, kNoBody, stats),
-                      0)
+            EXPECT_EQ(
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(-toward, angle)), point, RayScene::kNoBody, stats),
+                0)
                 << i;
         }
     }
@@ -348,11 +350,11 @@ TEST(Shadows, ThatLeaveTheSliceFindBodiesOutsideIt) {
     const Shadows shadows(placed, tree);
     FrameStats stats;
     for (double angle : {0.0, 5.0}) {
-        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(Vec4::UnitW(), angle)), Vec4::Zero(), kNoBody,
-                                     stats),
+        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(Vec4::UnitW(), angle)), Vec4::Zero(),
+                                     RayScene::kNoBody, stats),
                   0);
-        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(-Vec4::UnitW(), angle)), Vec4::Zero(), kNoBody,
-                                     stats),
+        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(-Vec4::UnitW(), angle)), Vec4::Zero(),
+                                     RayScene::kNoBody, stats),
                   1);
     }
 }

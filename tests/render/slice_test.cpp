@@ -16,7 +16,7 @@
 namespace tesserae::render {
 namespace {
 
-TestScene cloud(std::uint64_t seed, int count, double spread, bool spheres_only) {
+TestScene slice_cloud(std::uint64_t seed, int count, double spread, bool spheres_only) {
     Random random(seed);
     TestScene scene;
     for (int i = 0; i < count; ++i)
@@ -59,7 +59,7 @@ TEST(SliceBounds, HoldEveryHit) {
     Random random(21);
     std::size_t hit_count = 0;
     for (int round = 0; round < 30; ++round) {
-        TestScene scene = cloud(100 + static_cast<std::uint64_t>(round), 150, 2, false);
+        TestScene scene = slice_cloud(100 + static_cast<std::uint64_t>(round), 150, 2, false);
         // Now and then from far outside, from within, and far from the world's origin.
         scene.camera = random_camera(random, round % 3 == 0 ? 1 : 8);
         if (round % 5 == 4) {
@@ -202,7 +202,7 @@ TEST(TileSource, ListsLoseNoBody) {
     Random random(22);
     std::size_t hit_count = 0;
     for (int round = 0; round < 10; ++round) {
-        TestScene scene = cloud(200 + static_cast<std::uint64_t>(round), 100, 2, false);
+        TestScene scene = slice_cloud(200 + static_cast<std::uint64_t>(round), 100, 2, false);
         scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero());
         scene.camera = random_camera(random, 6);
         const Camera camera(scene.camera, 96, 64);

@@ -8,7 +8,7 @@
 // Integrals over the directions of 4D, S^3.
 namespace tesserae::render {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The direction at a polar angle, its tangent part at an angle from the x axis.
 inline Vec4 direction_at(double polar, double turn) {
@@ -31,13 +31,13 @@ double integral(const F& f, double a, double b, double p, double q, int steps) {
         }
         sum += ring * std::sin(polar) * std::sin(polar);
     }
-    return sum * 2 * kPi * (b - a) * (q - p) / (steps * steps);
+    return sum * 2 * pi * (b - a) * (q - p) / (steps * steps);
 }
 
 /// The directional albedo: what a surface sends back of a uniform field of radiance 1.
 template <class Brdf>
 double albedo_by_quadrature(const Brdf& brdf, int steps = 900) {
-    return integral([&](const Vec4& in) { return brdf(in) * in[3]; }, 0, kPi / 2, 0, kPi, steps);
+    return integral([&](const Vec4& in) { return brdf(in) * in[3]; }, 0, pi / 2, 0, pi, steps);
 }
 
 }  // namespace tesserae::render

@@ -58,6 +58,17 @@ Shape random_shape(Random& random, int kind, double size) {
     return Hyperbox{2 * Vec4(side(), side(), side(), side())};
 }
 
+TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest) {
+    Random random(seed);
+    TestScene scene;
+    for (int i = 0; i < count; ++i) {
+        const double size = std::exp(uniform(random, std::log(least), std::log(largest)));
+        scene.add(random_shape(random, i % 3, size), random_vector(random, spread),
+                  random_rotor(random));
+    }
+    return scene;
+}
+
 CameraDescription random_camera(Random& random, double distance) {
     CameraDescription camera;
     camera.look_at = random_vector(random, 0.5);

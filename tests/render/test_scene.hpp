@@ -42,6 +42,10 @@ Rotor random_rotor(Random& random);
 /// kind 0 hypersphere, 1 hypercapsule, 2 hyperbox, of about the given size.
 Shape random_shape(Random& random, int kind, double size);
 
+/// Bodies of all bounded shapes in turn, anywhere in a cube and any way round, of sizes `least` to
+/// `largest`, small and large as often.
+TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest);
+
 /// A camera anywhere and any way round, `distance` from a point near the origin that it looks at.
 CameraDescription random_camera(Random& random, double distance);
 

@@ -10,17 +10,6 @@
 namespace tesserae::render {
 namespace {
 
-TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest) {
-    Random random(seed);
-    TestScene scene;
-    for (int i = 0; i < count; ++i) {
-        const double size = std::exp(uniform(random, std::log(least), std::log(largest)));
-        scene.add(random_shape(random, i % 3, size), random_vector(random, spread),
-                  random_rotor(random));
-    }
-    return scene;
-}
-
 Hit nearest_of_all(const PlacedBodies& placed, const Camera& camera, const ViewRay& ray,
                    const Settings& settings) {
     const Vec4 origin =

@@ -8,7 +8,7 @@ namespace tesserae {
 namespace {
 
 /// A few roundings of sums of up to 8 products of numbers of order 1 to 5.
-constexpr double kRounding = 2e-14;
+constexpr double kGradeRounding = 2e-14;
 
 TEST(Bivector, WedgeIsTheAntisymmetricProduct) {
     RandomAlgebra random(301);
@@ -17,8 +17,8 @@ TEST(Bivector, WedgeIsTheAntisymmetricProduct) {
         Multivector half = product(to_blades(a), to_blades(b));
         const Multivector other = product(to_blades(b), to_blades(a));
         for (unsigned k = 0; k < 16; ++k) half[k] = 0.5 * (half[k] - other[k]);
-        EXPECT_LE(largest_difference(half, to_blades(Rotor{0, wedge(a, b), 0})), kRounding);
-        EXPECT_NEAR(wedge(wedge(a, b), wedge(a, b)), 0, kRounding);  // simple
+        EXPECT_LE(largest_difference(half, to_blades(Rotor{0, wedge(a, b), 0})), kGradeRounding);
+        EXPECT_NEAR(wedge(wedge(a, b), wedge(a, b)), 0, kGradeRounding);  // simple
     }
 }
 
@@ -27,8 +27,8 @@ TEST(Bivector, WedgeOfTwoIsTheirFourBladePart) {
     for (int i = 0; i < 2000; ++i) {
         const Bivector a = random.bivector(), b = random.bivector();
         const Multivector ab = product(to_blades(Rotor{0, a, 0}), to_blades(Rotor{0, b, 0}));
-        EXPECT_NEAR(ab[15], wedge(a, b), kRounding);
-        EXPECT_NEAR(ab[0], -dot(a, b), kRounding);
+        EXPECT_NEAR(ab[15], wedge(a, b), kGradeRounding);
+        EXPECT_NEAR(ab[0], -dot(a, b), kGradeRounding);
     }
 }
 
@@ -63,10 +63,10 @@ TEST(Bivector, VelocityIsTheCommutatorTheMatrixAndTheContraction) {
         const Multivector w = to_blades(Rotor{0, omega, 0});
         const Vec4 commutator =
             0.5 * (vector_part(product(to_blades(r), w)) - vector_part(product(w, to_blades(r))));
-        EXPECT_LE((v - commutator).norm(), kRounding);
-        EXPECT_LE((v - to_matrix(omega) * r).norm(), kRounding);
+        EXPECT_LE((v - commutator).norm(), kGradeRounding);
+        EXPECT_LE((v - to_matrix(omega) * r).norm(), kGradeRounding);
         // The power of a force is its torque's dot product with omega.
-        EXPECT_NEAR(f.dot(v), dot(omega, wedge(r, f)), 5 * kRounding);
+        EXPECT_NEAR(f.dot(v), dot(omega, wedge(r, f)), 5 * kGradeRounding);
     }
 }
 
@@ -76,7 +76,7 @@ TEST(Bivector, ComesBackFromItsMatrix) {
         const Bivector b = random.bivector();
         EXPECT_EQ(to_bivector(to_matrix(b)), b);
         const Mat4 symmetric = Mat4::Constant(3) + Mat4(random.vector().asDiagonal());
-        EXPECT_LE(largest_difference(to_bivector(to_matrix(b) + symmetric), b), kRounding);
+        EXPECT_LE(largest_difference(to_bivector(to_matrix(b) + symmetric), b), kGradeRounding);
         EXPECT_DOUBLE_EQ(norm(b), to_matrix(b).norm() / std::sqrt(2.0));
     }
 }

@@ -6,7 +6,7 @@ namespace tesserae {
 namespace {
 
 /// A few roundings of numbers of order pi.
-constexpr double kRounding = 8e-15;
+constexpr double kExpRounding = 8e-15;
 
 /// A bivector with angles first in a random plane and second in the plane orthogonal to it.
 Bivector in_two_planes(RandomAlgebra& random, double first, double second) {
@@ -70,10 +70,10 @@ TEST(RotorExp, IsAProductOverTheInvariantPlanes) {
     for (int i = 0; i < 3000; ++i) {
         const Bivector plane = random.plane();
         const Bivector first = random.gauss() * plane, second = random.gauss() * dual(plane);
-        EXPECT_LE(largest_difference(exp(first) * exp(second), exp(first + second)), kRounding);
+        EXPECT_LE(largest_difference(exp(first) * exp(second), exp(first + second)), kExpRounding);
         // And the power law along one b.
         const Bivector b = random.bivector();
-        EXPECT_LE(largest_difference(exp(0.25 * b) * exp(0.75 * b), exp(b)), kRounding);
+        EXPECT_LE(largest_difference(exp(0.25 * b) * exp(0.75 * b), exp(b)), kExpRounding);
     }
 }
 
@@ -81,9 +81,9 @@ TEST(RotorLog, IsUndoneByExpEverywhere) {
     RandomAlgebra random(325);
     const auto check = [](const Rotor& r) {
         const Bivector b = log(r);
-        EXPECT_LE(largest_difference(exp(b), r), kRounding)
+        EXPECT_LE(largest_difference(exp(b), r), kExpRounding)
             << r.s << " " << norm(r.b) << " " << r.p;
-        EXPECT_LE(norm(b), M_PI * std::sqrt(2.0) + kRounding);
+        EXPECT_LE(norm(b), M_PI * std::sqrt(2.0) + kExpRounding);
     };
     for (int i = 0; i < 2000; ++i) {
         const Bivector plane = random.plane();
@@ -132,19 +132,19 @@ TEST(Interpolation, MeetsBothEndsAtOneSpeedTheShortestWay) {
     RandomAlgebra random(329);
     for (int i = 0; i < 2000; ++i) {
         const Rotor r0 = random.rotor(), r1 = random.rotor();
-        EXPECT_LE(largest_difference(interpolate(r0, r1, 0), r0), kRounding);
-        EXPECT_LE((to_matrix(interpolate(r0, r1, 1)) - to_matrix(r1)).norm(), kRounding);
+        EXPECT_LE(largest_difference(interpolate(r0, r1, 0), r0), kExpRounding);
+        EXPECT_LE((to_matrix(interpolate(r0, r1, 1)) - to_matrix(r1)).norm(), kExpRounding);
         // Equal steps turn by the same rotor, which is t of the whole.
         const Rotor a = interpolate(r0, r1, 0.2), b = interpolate(r0, r1, 0.6);
         const Rotor c = interpolate(r0, r1, 1);
-        EXPECT_LE(largest_difference(b * reverse(a), c * reverse(b)), 2 * kRounding);
+        EXPECT_LE(largest_difference(b * reverse(a), c * reverse(b)), 2 * kExpRounding);
         // No other logarithm of the same rotation is shorter.
         const Rotor turn = r1 * reverse(r0);
         const double taken = norm(log(interpolate(r0, r1, 1) * reverse(r0)));
-        EXPECT_LE(taken, std::min(norm(log(turn)), norm(log(-turn))) + kRounding);
+        EXPECT_LE(taken, std::min(norm(log(turn)), norm(log(-turn))) + kExpRounding);
         // R and -R are the same place.
         EXPECT_LE(largest_difference(interpolate(r0, -r1, 0.7), interpolate(r0, r1, 0.7)),
-                  kRounding);
+                  kExpRounding);
     }
 }
 
@@ -158,8 +158,8 @@ TEST(Interpolation, OfHalfTurnsGoesTheFixedWayWhateverTheRounding) {
         const Rotor halfway = exp(sign * M_PI / 4 * plane) * r0;
         for (double half : {M_PI / 2, -M_PI / 2}) {
             const Rotor r1 = exp(half * plane) * r0;
-            EXPECT_LE(largest_difference(interpolate(r0, r1, 0.5), halfway), 4 * kRounding);
-            EXPECT_LE(largest_difference(interpolate(r0, -r1, 0.5), halfway), 4 * kRounding);
+            EXPECT_LE(largest_difference(interpolate(r0, r1, 0.5), halfway), 4 * kExpRounding);
+            EXPECT_LE(largest_difference(interpolate(r0, -r1, 0.5), halfway), 4 * kExpRounding);
         }
     }
 }
@@ -168,8 +168,8 @@ TEST(Interpolation, OfEqualRotorsStays) {
     RandomAlgebra random(331);
     for (int i = 0; i < 500; ++i) {
         const Rotor r = random.rotor();
-        EXPECT_LE(largest_difference(interpolate(r, r, 0.3), r), kRounding);
-        EXPECT_LE(largest_difference(interpolate(r, -r, 0.3), r), kRounding);
+        EXPECT_LE(largest_difference(interpolate(r, r, 0.3), r), kExpRounding);
+        EXPECT_LE(largest_difference(interpolate(r, -r, 0.3), r), kExpRounding);
     }
 }
 

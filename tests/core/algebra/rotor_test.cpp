@@ -10,7 +10,7 @@ namespace tesserae {
 namespace {
 
 /// A few roundings of sums of 8 products of numbers below 1.
-constexpr double kRounding = 4e-15;
+constexpr double kProductRounding = 4e-15;
 
 Vec4 sandwich(const Rotor& r, const Vec4& v) {
     return vector_part(product(product(to_blades(r), to_blades(v)), to_blades(reverse(r))));
@@ -29,10 +29,10 @@ TEST(Rotor, ProductIsAssociativeAndReversedByReverse) {
     RandomAlgebra random(312);
     for (int i = 0; i < 3000; ++i) {
         const Rotor a = random.rotor(), b = random.rotor(), c = random.rotor();
-        EXPECT_LE(largest_difference((a * b) * c, a * (b * c)), kRounding);
-        EXPECT_LE(largest_difference(reverse(a * b), reverse(b) * reverse(a)), kRounding);
-        EXPECT_LE(largest_difference(a * reverse(a), Rotor{}), kRounding);
-        EXPECT_LE(spin4_defect(a * b), kRounding);
+        EXPECT_LE(largest_difference((a * b) * c, a * (b * c)), kProductRounding);
+        EXPECT_LE(largest_difference(reverse(a * b), reverse(b) * reverse(a)), kProductRounding);
+        EXPECT_LE(largest_difference(a * reverse(a), Rotor{}), kProductRounding);
+        EXPECT_LE(spin4_defect(a * b), kProductRounding);
     }
 }
 
@@ -47,16 +47,16 @@ TEST(Rotor, MatrixIsTheSandwichOfEveryAxis) {
         const Rotor a = random.rotor(), b = random.rotor();
         const Mat4 m = to_matrix(a);
         for (int axis = 0; axis < 4; ++axis)
-            EXPECT_LE((m.col(axis) - sandwich(a, Vec4::Unit(axis))).norm(), kRounding);
+            EXPECT_LE((m.col(axis) - sandwich(a, Vec4::Unit(axis))).norm(), kProductRounding);
         // The matrix scales by |R|^2, and R's own length is off by rounding.
-        const double error = kRounding + 4 * spin4_defect(a);
+        const double error = kProductRounding + 4 * spin4_defect(a);
         EXPECT_LE((m.transpose() * m - Mat4::Identity()).norm(), error);
         EXPECT_NEAR(m.determinant(), 1, error);
-        EXPECT_LE((to_matrix(a * b) - m * to_matrix(b)).norm(), kRounding);
-        EXPECT_LE((y_axis_of(a) - m.col(1)).norm(), kRounding);
+        EXPECT_LE((to_matrix(a * b) - m * to_matrix(b)).norm(), kProductRounding);
+        EXPECT_LE((y_axis_of(a) - m.col(1)).norm(), kProductRounding);
         EXPECT_EQ(to_matrix(-a), m);
         const Vec4 v = random.vector();
-        EXPECT_LE((rotate(a, v) - m * v).norm(), kRounding * v.norm());
+        EXPECT_LE((rotate(a, v) - m * v).norm(), kProductRounding * v.norm());
     }
 }
 
@@ -66,10 +66,10 @@ TEST(Rotor, TurnsBivectorsAsTheMatrixDoes) {
         const Rotor r = random.rotor();
         const Bivector b = random.bivector();
         const Mat4 m = to_matrix(r), turned = m * to_matrix(b) * m.transpose();
-        EXPECT_LE((to_matrix(rotate(r, b)) - turned).norm(), 2 * kRounding * norm(b));
+        EXPECT_LE((to_matrix(rotate(r, b)) - turned).norm(), 2 * kProductRounding * norm(b));
         const Vec4 u = random.vector(), v = random.vector();
         EXPECT_LE(largest_difference(rotate(r, wedge(u, v)), wedge(rotate(r, u), rotate(r, v))),
-                  2 * kRounding * u.norm() * v.norm());
+                  2 * kProductRounding * u.norm() * v.norm());
     }
 }
 
@@ -77,7 +77,8 @@ TEST(Rotor, ComesBackFromItsMatrixUpToSign) {
     RandomAlgebra random(315);
     const auto check = [](const Rotor& r) {
         const Rotor back = to_rotor(to_matrix(r));
-        EXPECT_LE(std::min(largest_difference(back, r), largest_difference(back, -r)), kRounding);
+        EXPECT_LE(std::min(largest_difference(back, r), largest_difference(back, -r)),
+                  kProductRounding);
         for (double c :
              {back.s, back.b.xy, back.b.xz, back.b.xw, back.b.yz, back.b.yw, back.b.zw, back.p}) {
             if (std::abs(c) <= kRotorNoise) continue;
@@ -135,7 +136,7 @@ TEST(RotorProjection, IsTheFormulaThroughTheSquareRootOfRTimesItsReverse) {
         const double v = 0.5 * (std::sqrt(a + b) - std::sqrt(a - b));
         const double k = 1 / (u * u - v * v);
         const Multivector expected = product(to_blades(Rotor{k * u, {}, -k * v}), to_blades(r));
-        EXPECT_LE(largest_difference(to_blades(projected_to_spin4(r)), expected), kRounding);
+        EXPECT_LE(largest_difference(to_blades(projected_to_spin4(r)), expected), kProductRounding);
     }
 }
 
@@ -151,10 +152,10 @@ TEST(RotorProjection, IsTheNearestRotor) {
         const Rotor r = {unit.s + size * e.s, unit.b + size * e.b, unit.p + size * e.p};
         const Rotor projected = projected_to_spin4(r);
         const double least = gap(r, projected);
-        EXPECT_LE(least, gap(r, unit) + kRounding);
+        EXPECT_LE(least, gap(r, unit) + kProductRounding);
         for (double step : {1e-1, 1e-3, 1e-5, 1e-7}) {
             const Rotor other = exp(step * random.bivector()) * projected;
-            EXPECT_LE(least, gap(r, other) + kRounding) << step;
+            EXPECT_LE(least, gap(r, other) + kProductRounding) << step;
         }
     }
 }
@@ -165,7 +166,8 @@ TEST(RotorProjection, IgnoresScaleAndThePseudoscalar) {
     for (int i = 0; i < 2000; ++i) {
         const Rotor r = random.rotor();
         const double u = random.uniform(0.1, 10), v = random.uniform(-0.9, 0.9) * u;
-        EXPECT_LE(largest_difference(projected_to_spin4(Rotor{u, {}, v} * r), r), 10 * kRounding);
+        EXPECT_LE(largest_difference(projected_to_spin4(Rotor{u, {}, v} * r), r),
+                  10 * kProductRounding);
     }
 }
 

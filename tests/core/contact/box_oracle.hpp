@@ -37,7 +37,7 @@ struct Random {
     }
 };
 
-struct Placed {
+struct PlacedBox {
     Hyperbox box;
     Vec4 position = Vec4::Zero();
     Rotor rotor;
@@ -47,12 +47,12 @@ struct Placed {
 };
 
 struct Two {
-    Placed a, b;
+    PlacedBox a, b;
     double reach() const { return a.reach() + b.reach(); }
 };
 
 /// The four half sides as vectors of the world.
-inline std::array<Wide, 4> generators(const Placed& p) {
+inline std::array<Wide, 4> generators(const PlacedBox& p) {
     const Mat4 axes = to_matrix(p.rotor);
     std::array<Wide, 4> g;
     for (int i = 0; i < 4; ++i) g[i] = axes.col(i).cast<Real>() * (Real(0.5) * p.box.size[i]);
@@ -65,7 +65,7 @@ inline Wide offset(const Two& two) {
 /// How far the boxes lie apart along a unit direction from a to b: difference of supports.
 inline Real gap_along(const Two& two, const Wide& direction) {
     Real gap = direction.dot(offset(two));
-    for (const Placed* p : {&two.a, &two.b})
+    for (const PlacedBox* p : {&two.a, &two.b})
         for (const Wide& g : generators(*p)) gap -= std::abs(direction.dot(g));
     return gap;
 }
@@ -98,7 +98,7 @@ inline Wide cross(const Wide& a, const Wide& b, const Wide& c) {
 /// generators. Minus the least overlap where the boxes overlap.
 inline Real largest_facet_gap(const Two& two) {
     std::vector<Wide> all;
-    for (const Placed* p : {&two.a, &two.b})
+    for (const PlacedBox* p : {&two.a, &two.b})
         for (const Wide& g : generators(*p)) all.push_back(g.normalized());
     Real best = -INFINITY;
     for (int i = 0; i < 8; ++i)
@@ -150,7 +150,7 @@ inline Real distance_over_faces(const Two& two) {
 /// Two boxes of sides 0.2 to 2 at any angle, their centres up to `spread` bounding radii apart.
 inline Two random_two(Random& random, double spread) {
     Two two;
-    for (Placed* p : {&two.a, &two.b})
+    for (PlacedBox* p : {&two.a, &two.b})
         p->box.size = random.sizes(-0.7, 0.3), p->rotor = random.rotor();
     two.a.position = random.uniform(0, 3) * random.direction();
     two.b.position = two.a.position + random.uniform(0, spread) * two.reach() * random.direction();
@@ -173,7 +173,7 @@ inline void slide_to(Two& two, double gap) {
 /// Pairs in which something is parallel, equal, coincident, thin, tiny, far or just touching.
 inline Two degenerate_two(Random& random, std::string& kind) {
     Two two = random_two(random, 1);
-    Placed &a = two.a, &b = two.b;
+    PlacedBox &a = two.a, &b = two.b;
     const int sizes = random.below(4);
     kind = std::to_string(sizes);
     if (sizes == 1) b.box = a.box;

@@ -20,7 +20,7 @@ double bias_of(const Two& two) {
     return kCellBias * 0.5 * std::min(two.a.box.size.minCoeff(), two.b.box.size.minCoeff());
 }
 
-double surface_distance(const Placed& p, const Vec4& point) {
+double surface_distance(const PlacedBox& p, const Vec4& point) {
     return std::abs(signed_distance(p.box, to_matrix(p.rotor).transpose() * (point - p.position)));
 }
 
@@ -90,7 +90,7 @@ void sweep_random(std::uint64_t seed, int count) {
     for (int i = 0; i < count; ++i) {
         SCOPED_TRACE(i);
         expect_sound(random, random_two(random, 1));
-        if (testing::Test::HasFailure()) return;
+        if (::testing::Test::HasFailure()) return;
     }
 }
 
@@ -101,7 +101,7 @@ void sweep_degenerate(std::uint64_t seed, int count) {
         const Two two = degenerate_two(random, kind);
         SCOPED_TRACE(kind + " at " + std::to_string(i));
         expect_sound(random, two);
-        if (testing::Test::HasFailure()) return;
+        if (::testing::Test::HasFailure()) return;
     }
 }
 
@@ -165,8 +165,8 @@ TEST(HyperboxPair, IsTheSameAfterARigidMotion) {
         const Two two = random_two(random, 0.9);
         const Rotor turn = random.rotor();
         const Vec4 shift = random.direction();
-        const Two other = mapped(two, [&](const Placed& p) {
-            return Placed{p.box, shift + rotate(turn, p.position), turn * p.rotor};
+        const Two other = mapped(two, [&](const PlacedBox& p) {
+            return PlacedBox{p.box, shift + rotate(turn, p.position), turn * p.rotor};
         });
         expect_same_pair(two, other, to_matrix(turn), i);
         const auto first = contacts_of(two, 0.1), second = contacts_of(other, 0.1);
@@ -187,9 +187,9 @@ TEST(HyperboxPair, IsTheSameInAMirrorAndWithAxesPermuted) {
         int order[4] = {0, 1, 2, 3};
         std::shuffle(order, order + 4, random.engine);
         for (int k = 0; k < 4; ++k) map(order[k], k) = random.below(2) == 0 ? 1 : -1;
-        const Two other = mapped(two, [&](const Placed& p) {
-            return Placed{Hyperbox{map.cwiseAbs() * p.box.size}, map * p.position,
-                          to_rotor(map * to_matrix(p.rotor) * map.transpose())};
+        const Two other = mapped(two, [&](const PlacedBox& p) {
+            return PlacedBox{Hyperbox{map.cwiseAbs() * p.box.size}, map * p.position,
+                             to_rotor(map * to_matrix(p.rotor) * map.transpose())};
         });
         expect_same_pair(two, other, map, i);
     }
@@ -213,18 +213,18 @@ TEST(HyperboxPair, IsTheSameSwappedButForTheSideOfTheNormal) {
 
 /// The least overlap of two 3D boxes by the textbook's 15 axes, minus; a lower bound if apart.
 double overlap_3d(const Two& two) {
-    using Vec3 = Eigen::Vector3d;
-    std::vector<Vec3> axes;
+    using Axis = Eigen::Vector3d;
+    std::vector<Axis> axes;
     const Mat4 a = to_matrix(two.a.rotor), b = to_matrix(two.b.rotor);
     for (int i = 0; i < 3; ++i) {
         axes.push_back(a.col(i).head<3>());
         axes.push_back(b.col(i).head<3>());
         for (int j = 0; j < 3; ++j) axes.push_back(a.col(i).head<3>().cross(b.col(j).head<3>()));
     }
-    const Vec3 between = (two.b.position - two.a.position).head<3>();
+    const Axis between = (two.b.position - two.a.position).head<3>();
     double best = -INFINITY;
-    for (const Vec3& axis : axes) {
-        const Vec3 n = axis.normalized();
+    for (const Axis& axis : axes) {
+        const Axis n = axis.normalized();
         double gap = std::abs(n.dot(between));
         for (int k = 0; k < 3; ++k)
             gap -= 0.5 * (two.a.box.size[k] * std::abs(n.dot(a.col(k).head<3>())) +
@@ -241,7 +241,7 @@ TEST(HyperboxPair, IsThatOf3DBoxesInSlabsAlongW) {
     int touching = 0;
     for (int i = 0; i < 3000; ++i) {
         Two two = random_two(random, 0.7);
-        for (Placed* p : {&two.a, &two.b}) {
+        for (PlacedBox* p : {&two.a, &two.b}) {
             p->box.size[3] = 8;
             p->position[3] = 0;
             p->rotor = exp({random.normal(), random.normal(), 0, random.normal(), 0, 0});

@@ -106,7 +106,7 @@ void expect_exact(std::pair<Placed<A>, Placed<B>> (*draw)(RandomGeometry&), int 
         const auto [a, b] = draw(random);
         SCOPED_TRACE(i);
         measure(a, b, errors);
-        if (testing::Test::HasFatalFailure()) return;
+        if (::testing::Test::HasFatalFailure()) return;
     }
     errors.print(set);
     EXPECT_LT(errors.separation, kPairAccuracy);

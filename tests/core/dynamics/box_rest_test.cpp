@@ -9,24 +9,18 @@ namespace {
 
 using namespace testing;
 
-const Vec4 kDown{0, -10, 0, 0};
-
 /// The rotation in the plane of two unit directions that takes `from` to `to`.
 Rotor rotor_between(const Vec4& from, const Vec4& to) {
     const Bivector plane = wedge(from, to);
     const double sine = norm(plane);
     // Opposite ones are met here along y only: half a turn that takes y to -y.
-    if (sine < 1e-12) return from.dot(to) > 0 ? Rotor{} : exp(Bivector{-0.5 * kPi});
+    if (sine < 1e-12) return from.dot(to) > 0 ? Rotor{} : exp(Bivector{-0.5 * pi});
     return exp(-0.5 * std::atan2(sine, from.dot(to)) / sine * plane);
 }
 
 /// What a box points down with: straight down in its own frame.
 Vec4 down_of(const World& world, BodyId id) {
     return rotate(reverse(world.bodies().rotor[id]), -Vec4::UnitY());
-}
-
-void run(World& world, int steps) {
-    for (int i = 0; i < steps; ++i) world.step(1.0 / 240);
 }
 
 double speed(const World& world, BodyId id) {

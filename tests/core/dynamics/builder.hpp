@@ -3,15 +3,21 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <random>
 
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/memory.hpp"
 #include "core/dynamics/settings.hpp"
+#include "core/dynamics/world.hpp"
 
 namespace tesserae::testing {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
+
+/// The default time step [s], and its gravity [m/s^2].
+constexpr double kStep = 1.0 / 240;
+inline const Vec4 kDown{0, -10, 0, 0};
 
 inline BodyType sphere_type(double radius, double mass = 1, double friction = 0,
                             double restitution = 0) {
@@ -44,6 +50,13 @@ inline BodyType box_type(const Vec4& size, double mass = 1) {
     return type;
 }
 
+inline BodyType capsule_type(double radius, double height, double mass = 1) {
+    BodyType type;
+    type.shape = Hypercapsule{radius, height};
+    type.mass = mass;
+    return type;
+}
+
 /// The soft solver as README recommends it.
 inline PhysicsSettings soft_settings() {
     PhysicsSettings settings;
@@ -51,6 +64,16 @@ inline PhysicsSettings soft_settings() {
     settings.substeps = 4;
     settings.iterations = 2;
     return settings;
+}
+
+inline PhysicsSettings without_gravity() {
+    PhysicsSettings settings;
+    settings.gravity.setZero();
+    return settings;
+}
+
+inline void run(World& world, int steps) {
+    for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
 /// Adds one body, of a type of its own.
@@ -87,7 +110,7 @@ inline Bodies heap_of_spheres(int count, int across = 4) {
         x *= 1.1;
         for (int k = 0; k < 4; ++k) x[k] += jitter(engine);
         const double radius = radii[i % 3];
-        const double volume = 0.5 * kPi * kPi * std::pow(radius, 4);
+        const double volume = 0.5 * pi * pi * std::pow(radius, 4);
         add(bodies, sphere_type(radius, 1000 * volume, 0.5, 0.1), x);
     }
     return bodies;

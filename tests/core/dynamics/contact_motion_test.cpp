@@ -13,7 +13,7 @@ using namespace testing;
 
 constexpr double kRadius = 0.5;
 /// A sum of some 500 rounded steps of quantities around 1; far below any modelling error.
-constexpr double kRounding = 1e-11;
+constexpr double kMotionRounding = 1e-11;
 
 /// A sphere (body 1) on or above the plane y = 0 (body 0).
 World sphere_on_plane(double friction, double restitution, const Vec4& gravity, double gap,
@@ -26,9 +26,7 @@ World sphere_on_plane(double friction, double restitution, const Vec4& gravity, 
     return World(bodies, settings);
 }
 
-const Vec4 kDown{0, -10, 0, 0};
-
-void run(World& world, double time, int steps_per_second) {
+void run_for(World& world, double time, int steps_per_second) {
     const int steps = static_cast<int>(std::lround(time * steps_per_second));
     for (int i = 0; i < steps; ++i) world.step(1.0 / steps_per_second);
 }
@@ -39,12 +37,13 @@ TEST(Sliding, TurnsIntoRollingAtThreeQuartersOfTheSpeed) {
     const double v0 = 3.6, mu = 0.3;
     const Vec4 direction{0, 0, 0.6, 0.8};
     World world = sphere_on_plane(mu, 0, kDown, 0, v0 * direction);
-    run(world, 0.25, 240);
-    EXPECT_LT((world.bodies().velocity[1] - (v0 - mu * 10 * 0.25) * direction).norm(), kRounding);
-    run(world, 0.75, 240);
-    EXPECT_LT((world.bodies().velocity[1] - 0.75 * v0 * direction).norm(), kRounding);
-    EXPECT_NEAR(norm(world.bodies().angular_velocity[1]), 0.75 * v0 / kRadius, kRounding);
-    EXPECT_NEAR(world.bodies().position[1][1], kRadius, kRounding);
+    run_for(world, 0.25, 240);
+    EXPECT_LT((world.bodies().velocity[1] - (v0 - mu * 10 * 0.25) * direction).norm(),
+              kMotionRounding);
+    run_for(world, 0.75, 240);
+    EXPECT_LT((world.bodies().velocity[1] - 0.75 * v0 * direction).norm(), kMotionRounding);
+    EXPECT_NEAR(norm(world.bodies().angular_velocity[1]), 0.75 * v0 / kRadius, kMotionRounding);
+    EXPECT_NEAR(world.bodies().position[1][1], kRadius, kMotionRounding);
 }
 
 TEST(Sliding, CoversTheRightDistanceToSecondOrder) {
@@ -53,11 +52,11 @@ TEST(Sliding, CoversTheRightDistanceToSecondOrder) {
     const double exact = v0 * t - 0.5 * mu * 10 * t * t + 0.75 * v0 * (1 - t);
     for (int steps_per_second : {60, 240, 960}) {
         World world = sphere_on_plane(mu, 0, kDown, 0, {v0, 0, 0, 0});
-        run(world, 1, steps_per_second);
+        run_for(world, 1, steps_per_second);
         // Exact on either side of the change; in its step the acceleration of 3 m/s^2 acts for a
         // wrong time of at most h while the speed is right at both ends.
         const double h = 1.0 / steps_per_second;
-        EXPECT_NEAR(world.bodies().position[1][0], exact, 0.5 * mu * 10 * h * h + kRounding);
+        EXPECT_NEAR(world.bodies().position[1][0], exact, 0.5 * mu * 10 * h * h + kMotionRounding);
     }
 }
 
@@ -77,7 +76,7 @@ TEST(Sliding, BrakesABoxOfAnyYawAgainstItsVelocity) {
         settings.gravity = kDown;
         settings.iterations = 300;  // until nothing changes
         World world(bodies, settings);
-        run(world, t, 240);
+        run_for(world, t, 240);
         const double travel = v0 * t - 0.5 * mu * 10 * t * t;
         const Vec4 end = Vec4{0, 0.1, 0, 0} + travel * direction;
         EXPECT_LT((world.bodies().position[1] - end).norm(), 1e-9) << yaw;
@@ -88,15 +87,16 @@ TEST(Sliding, BrakesABoxOfAnyYawAgainstItsVelocity) {
 TEST(Incline, LetsASphereRollOrSlipAtTheExactAcceleration) {
     for (double degrees : {5.0, 20.0, 40.0, 60.0})
         for (double mu : {0.05, 0.2, 0.6}) {
-            const double angle = degrees * kPi / 180;
+            const double angle = degrees * pi / 180;
             const Vec4 gravity{10 * std::sin(angle), -10 * std::cos(angle), 0, 0};
             World world = sphere_on_plane(mu, 0, gravity, 0, Vec4::Zero());
-            run(world, 1, 240);
+            run_for(world, 1, 240);
             const bool rolls = mu >= std::tan(angle) / 4;
             const double a =
                 rolls ? 0.75 * 10 * std::sin(angle) : 10 * (std::sin(angle) - mu * std::cos(angle));
-            EXPECT_NEAR(world.bodies().velocity[1][0], a, kRounding) << degrees << " " << mu;
-            EXPECT_NEAR(world.bodies().position[1][0], 0.5 * a, kRounding) << degrees << " " << mu;
+            EXPECT_NEAR(world.bodies().velocity[1][0], a, kMotionRounding) << degrees << " " << mu;
+            EXPECT_NEAR(world.bodies().position[1][0], 0.5 * a, kMotionRounding)
+                << degrees << " " << mu;
         }
 }
 
@@ -127,8 +127,8 @@ TEST(Bounce, HeightsFallAsTheSquareOfRestitution) {
             const double missed = 10.0 / 8 / steps_per_second / steps_per_second;
             for (std::size_t k = 0; k < tops.size(); ++k) {
                 const double exact = std::pow(e, 2.0 * static_cast<double>(k));
-                EXPECT_LE(tops[k], exact + kRounding) << e << " " << k;
-                EXPECT_GE(tops[k], exact - missed - kRounding) << e << " " << k;
+                EXPECT_LE(tops[k], exact + kMotionRounding) << e << " " << k;
+                EXPECT_GE(tops[k], exact - missed - kMotionRounding) << e << " " << k;
             }
         }
 }
@@ -151,7 +151,7 @@ TEST(Bounce, ComesLateByAtMostAStep) {
     const double exact = e * v * (t - t1) - 5 * (t - t1) * (t - t1);
     for (int steps_per_second : {60, 240, 960, 3840}) {
         World world = sphere_on_plane(0, e, kDown, 1, Vec4::Zero());
-        run(world, t, steps_per_second);
+        run_for(world, t, steps_per_second);
         // The bounce is put into the middle of the step before the surface would be passed: up to
         // h too early, 1.5 h with the half step. Bodies that should be falling at v rise at e v.
         const double height = world.bodies().position[1][1] - kRadius;
@@ -161,7 +161,7 @@ TEST(Bounce, ComesLateByAtMostAStep) {
 
 TEST(Bounce, WithoutRestitutionComesToRestOnTheSurface) {
     World world = sphere_on_plane(0.5, 0, kDown, 1, Vec4::Zero());
-    run(world, 1, 240);
+    run_for(world, 1, 240);
     for (int i = 0; i < 100; ++i) {
         const StepReport report = world.step(1.0 / 240);
         EXPECT_EQ(report.contacts, 1u);
@@ -180,9 +180,9 @@ TEST(Collision, HeadOnOfEqualSpheresSwapsTheirVelocities) {
     PhysicsSettings settings;
     settings.gravity.setZero();
     World world(bodies, settings);
-    run(world, 2, 240);
-    EXPECT_LT((world.bodies().velocity[0] + 1.25 * n).norm(), kRounding);
-    EXPECT_LT((world.bodies().velocity[1] - 3 * n).norm(), kRounding);
+    run_for(world, 2, 240);
+    EXPECT_LT((world.bodies().velocity[0] + 1.25 * n).norm(), kMotionRounding);
+    EXPECT_LT((world.bodies().velocity[1] - 3 * n).norm(), kMotionRounding);
 }
 
 TEST(Collision, OfFastSpheresDoesNotTunnel) {
@@ -210,11 +210,11 @@ TEST(Overlap, OfCoincidentSpheresIsTakenApart) {
     PhysicsSettings settings;
     settings.gravity.setZero();
     World world(bodies, settings);
-    run(world, 1, 240);
+    run_for(world, 1, 240);
     const Bodies& now = world.bodies();
     const double distance = (now.position[1] - now.position[0]).norm();
     EXPECT_GE(distance, 2 * kRadius - 0.005 * kRadius - 1e-12);  // all but the allowed overlap
-    EXPECT_LT((now.velocity[0] + now.velocity[1]).norm(), kRounding);
+    EXPECT_LT((now.velocity[0] + now.velocity[1]).norm(), kMotionRounding);
 }
 
 }  // namespace

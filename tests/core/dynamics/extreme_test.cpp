@@ -137,7 +137,7 @@ TEST(Extreme, ACapsuleTenThousandTimesAsLongAsWideLiesStill) {
     type.mass = 10;
     type.friction = 0.5;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    add(bodies, type, {0, 0.01, 0, 0}, Vec4::Zero(), {}, exp(Bivector{0.25 * kPi}));
+    add(bodies, type, {0, 0.01, 0, 0}, Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
     // 0.005 of its radius is left alone.
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.01);
     EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.01);

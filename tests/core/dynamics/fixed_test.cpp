@@ -8,12 +8,6 @@ namespace {
 
 using namespace testing;
 
-PhysicsSettings without_gravity() {
-    PhysicsSettings settings;
-    settings.gravity.setZero();
-    return settings;
-}
-
 TEST(FixedPosition, StaysWhileTheBodyIsMadeToSpin) {
     Bodies bodies;
     BodyType wheel = sphere_type(1, 1, 1, 0);

@@ -13,8 +13,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kStep = 1.0 / 240;
-
 TEST(Heap, OfEightySpheresComesToRestWithSmallOverlaps) {
     const PhysicsSettings settings;
     World world(heap_of_spheres(80, 2), settings);

@@ -12,14 +12,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kStep = 1.0 / 240;
-
-PhysicsSettings without_gravity() {
-    PhysicsSettings settings;
-    settings.gravity.setZero();
-    return settings;
-}
-
 BodyType kinematic(BodyType type, double friction = 0, double restitution = 0) {
     type.fixed_position = type.fixed_rotation = true;
     type.friction = friction;
@@ -30,13 +22,6 @@ BodyType kinematic(BodyType type, double friction = 0, double restitution = 0) {
 BodyType with_surface(BodyType type, double friction, double restitution = 0) {
     type.friction = friction;
     type.restitution = restitution;
-    return type;
-}
-
-BodyType capsule_type(double radius, double height, double mass = 1) {
-    BodyType type;
-    type.shape = Hypercapsule{radius, height};
-    type.mass = mass;
     return type;
 }
 

@@ -13,8 +13,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kStep = 1.0 / 240;
-
 /// The heap without friction and restitution, each sphere turned somehow.
 Bodies smooth_heap(int count) {
     Bodies bodies = heap_of_spheres(count);

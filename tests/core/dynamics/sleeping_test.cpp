@@ -10,8 +10,6 @@ namespace {
 
 using namespace testing;
 
-constexpr double kStep = 1.0 / 240;
-
 PhysicsSettings sleepy() {
     PhysicsSettings settings;
     settings.sleeping = true;
@@ -25,10 +23,6 @@ Bodies two_stacks() {
     for (const double x : {0.0, 10.0})
         for (int i = 0; i < 3; ++i) add(bodies, box_type(Vec4::Ones(), 10), {x, 0.5 + i, 0, 0});
     return bodies;
-}
-
-void run(World& world, int steps) {
-    for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
 TEST(Sleeping, StacksAtRestFallAsleepAndStayWhereTheyAre) {

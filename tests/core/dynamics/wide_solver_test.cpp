@@ -14,26 +14,18 @@ namespace {
 
 using namespace testing;
 
-constexpr double kStep = 1.0 / 240;
+using Generator = std::mt19937_64;
 
-using Random = std::mt19937_64;
-
-Vec4 random_vector(Random& random, double half_side) {
+Vec4 random_vector(Generator& random, double half_side) {
     std::uniform_real_distribution<> along(-half_side, half_side);
     Vec4 v;
     for (int i = 0; i < 4; ++i) v[i] = along(random);
     return v;
 }
 
-Bivector random_bivector(Random& random) {
+Bivector random_bivector(Generator& random) {
     return wedge(random_vector(random, 1), random_vector(random, 1)) +
            wedge(random_vector(random, 1), random_vector(random, 1));
-}
-
-BodyType capsule_type(double radius, double length, double mass) {
-    BodyType type = sphere_type(radius, mass);
-    type.shape = Hypercapsule{radius, length};
-    return type;
 }
 
 PhysicsSettings settings_of(Solver solver, int iterations) {
@@ -46,7 +38,7 @@ PhysicsSettings settings_of(Solver solver, int iterations) {
 /// Bodies of all shapes that move at random and touch at random, one to eight points a pair, body 1
 /// all others: so many pairs that some are left over. Two bodies do not move, two only turn.
 StagedWorld random_island(Solver solver, double friction, bool spheres_only) {
-    Random random(3);
+    Generator random(3);
     Bodies bodies;
     constexpr BodyId kCount = 200;
     for (BodyId id = 0; id < kCount; ++id) {
@@ -161,7 +153,7 @@ std::vector<OnePair> pairs_of_all_kinds() {
 }
 
 TEST(WideSolver, SolvesAPairAsTheOneByOneSolverDoes) {
-    Random random(5);
+    Generator random(5);
     std::size_t most_points = 0;
     for (const OnePair& pair : pairs_of_all_kinds())
         for (int round = 0; round < 40; ++round) {
@@ -200,7 +192,7 @@ TEST(WideSolver, SolvesAPairAsTheOneByOneSolverDoes) {
 
 /// A heap of spheres, boxes and capsules about to touch, far from rest, as one island.
 Bodies crowd(double friction, bool boxes = true) {
-    Random random(11);
+    Generator random(11);
     Bodies bodies;
     for (int i = 0; i < 81; ++i) {
         BodyType type = sphere_type(0.5, 1.0 + i % 4);

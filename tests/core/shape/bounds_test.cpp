@@ -7,12 +7,12 @@ namespace tesserae {
 namespace {
 
 template <class S>
-struct ShapeBounds : testing::Test {};
-using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+struct ShapeBounds : ::testing::Test {};
+using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
 TYPED_TEST_SUITE(ShapeBounds, Bounded);
 
 /// A few roundings of a sum of five terms.
-constexpr double kRounding = 4e-15;
+constexpr double kBoundsRounding = 4e-15;
 
 Mat4 random_rotation(RandomGeometry& random) {
     const auto angle = [&] { return random.uniform(-3, 3); };
@@ -40,7 +40,7 @@ TYPED_TEST(ShapeBounds, SupportIsMaximalAndBelongsToTheShape) {
             if (i % 8 == 0) d = Vec4::Unit(random.engine() % 4) * (i % 16 ? 1 : -1);
             d *= random.log_uniform(1e-3, 1e3);
             const Vec4 farthest = support(shape, d);
-            const double error = kRounding * oracle.size;
+            const double error = kBoundsRounding * oracle.size;
             EXPECT_LE(double(oracle.outside(farthest.cast<long double>())), error);
             const double reach = d.dot(farthest);
             EXPECT_NEAR(reach, half_extent_along(shape, d), error * d.norm());
@@ -48,7 +48,7 @@ TYPED_TEST(ShapeBounds, SupportIsMaximalAndBelongsToTheShape) {
                 EXPECT_LE(d.dot(surface_point(oracle, random)), reach + error * d.norm());
         }
         EXPECT_LE(double(oracle.outside(support(shape, Vec4::Zero()).template cast<long double>())),
-                  kRounding * oracle.size);
+                  kBoundsRounding * oracle.size);
     }
 }
 
@@ -59,7 +59,7 @@ TYPED_TEST(ShapeBounds, HoldTheTurnedShapeAndAreAttained) {
         for (int i = 0; i < 20; ++i) {
             const Mat4 rotation = i ? random_rotation(random) : Mat4(Mat4::Identity());
             const Vec4 half = half_extents(shape, rotation);
-            const double error = kRounding * oracle.size;
+            const double error = kBoundsRounding * oracle.size;
             for (int k = 0; k < 20; ++k) {
                 const Vec4 p = rotation * surface_point(oracle, random);
                 EXPECT_LE((p.cwiseAbs() - half).maxCoeff(), error);
@@ -77,7 +77,7 @@ TYPED_TEST(ShapeBounds, BoundingRadiusIsTheFarthestPoint) {
     RandomGeometry random(423);
     for (const TypeParam& shape : sample_shapes<TypeParam>(random, 300)) {
         const Oracle oracle(shape);
-        const double radius = bounding_radius(shape), error = kRounding * radius;
+        const double radius = bounding_radius(shape), error = kBoundsRounding * radius;
         for (int k = 0; k < 20; ++k)
             EXPECT_LE(stable_norm(surface_point(oracle, random)), radius + error);
         // It is attained along one of the axes or diagonals.

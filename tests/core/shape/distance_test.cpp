@@ -6,8 +6,8 @@ namespace tesserae {
 namespace {
 
 template <class S>
-struct ShapeDistance : testing::Test {};
-using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+struct ShapeDistance : ::testing::Test {};
+using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
 TYPED_TEST_SUITE(ShapeDistance, Bounded);
 
 constexpr int kPointsPerShape = 100;

@@ -6,8 +6,8 @@ namespace tesserae {
 namespace {
 
 template <class S>
-struct ShapeMass : testing::Test {};
-using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+struct ShapeMass : ::testing::Test {};
+using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
 TYPED_TEST_SUITE(ShapeMass, Bounded);
 
 /// Sums over points of the shape: their number, x_i, x_i x_j and (x_i x_j)^2.

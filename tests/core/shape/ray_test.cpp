@@ -6,8 +6,8 @@ namespace tesserae {
 namespace {
 
 template <class S>
-struct ShapeRay : testing::Test {};
-using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+struct ShapeRay : ::testing::Test {};
+using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
 TYPED_TEST_SUITE(ShapeRay, Bounded);
 
 struct Line {

@@ -6,8 +6,8 @@ namespace tesserae {
 namespace {
 
 template <class S>
-struct ShapeRim : testing::Test {};
-using Bounded = testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
+struct ShapeRim : ::testing::Test {};
+using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
 TYPED_TEST_SUITE(ShapeRim, Bounded);
 
 /// The definition, in long double: the least s f(1/s) over s >= 1/limit, a convex function of s, by

@@ -25,7 +25,7 @@ using tesserae::testing::error_of;
 
 class FileWriterTest : public ::testing::Test {
   protected:
-    const testing::TemporaryFolder folder_{"file_writer"};
+    const tesserae::testing::TemporaryFolder folder_{"file_writer"};
 };
 
 std::string content_of(const fs::path& file) {

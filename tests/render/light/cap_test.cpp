@@ -11,7 +11,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Uniform3 uniforms(Random& random) {
     return {uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1)};
@@ -52,28 +52,28 @@ TEST(CosineDirection, HasTheMomentsOfItsDensity) {
         sum2 += d[3] * d[3], square2 += std::pow(d[3], 4);
         sumx += d[0] * d[0], squarex += std::pow(d[0], 4);
     }
-    expect_mean(sum, square, kCount, 3 * kPi / 16, "cos");
+    expect_mean(sum, square, kCount, 3 * pi / 16, "cos");
     expect_mean(sum2, square2, kCount, 0.4, "cos^2");
     expect_mean(sumx, squarex, kCount, 0.2, "x^2");
 }
 
 TEST(CapSolidAngle, MatchesItsFormulaAndItsSeries) {
-    for (double angle : {0.3, 0.49999, 0.50001, 1.0, kPi / 2, 3.0, kPi}) {
-        const double expected = 2 * kPi * (angle - std::sin(angle) * std::cos(angle));
+    for (double angle : {0.3, 0.49999, 0.50001, 1.0, pi / 2, 3.0, pi}) {
+        const double expected = 2 * pi * (angle - std::sin(angle) * std::cos(angle));
         // The formula itself cancels at small angles: 4 roundings of the angle.
-        EXPECT_NEAR(cap_solid_angle(angle), expected, 2 * kPi * 4 * 2.3e-16 * angle) << angle;
+        EXPECT_NEAR(cap_solid_angle(angle), expected, 2 * pi * 4 * 2.3e-16 * angle) << angle;
     }
-    EXPECT_NEAR(cap_solid_angle(kPi), 2 * kPi * kPi, 1e-14);
+    EXPECT_NEAR(cap_solid_angle(pi), 2 * pi * pi, 1e-14);
     // Small: a 3-ball of that radius, less a relative angle^2/5.
     for (double angle : {1e-8, 1e-4, 1e-3}) {
-        const double ball = 4 * kPi / 3 * angle * angle * angle;
+        const double ball = 4 * pi / 3 * angle * angle * angle;
         EXPECT_NEAR(cap_solid_angle(angle) / ball, 1 - angle * angle / 5, 1e-12) << angle;
     }
 }
 
 TEST(CapDirection, InvertsItsDistribution) {
     // The part of the cap within the angle that was returned is the number that went in.
-    for (double angle : {1e-7, 0.01, 0.3, 1.0, 1.4, kPi / 2})
+    for (double angle : {1e-7, 0.01, 0.3, 1.0, 1.4, pi / 2})
         for (int i = 1; i < 1000; ++i) {
             const double u = i / 1000.0;
             const Vec4 d = cap_direction(angle, {u, 0.3, 0.7});
@@ -120,7 +120,7 @@ double irradiance_by_quadrature(double angle, double altitude) {
             ring += std::max(0.0, std::cos(polar) * std::sin(altitude) +
                                       std::sin(polar) * z * std::cos(altitude));
         }
-        sum += 4 * kPi * std::sin(polar) * std::sin(polar) * ring / kSteps;
+        sum += 4 * pi * std::sin(polar) * std::sin(polar) * ring / kSteps;
     }
     return sum * angle / kSteps;
 }
@@ -128,10 +128,10 @@ double irradiance_by_quadrature(double angle, double altitude) {
 TEST(CapIrradiance, MatchesQuadratureAboveAndAcrossTheHorizon) {
     for (double angle : {0.05, 0.4, 1.0, 1.5})
         for (double part : {-0.99, -0.5, -0.1, 0.0, 0.3, 0.9, 1.0, 1.04}) {
-            const double altitude = std::min(part * angle, kPi / 2);
+            const double altitude = std::min(part * angle, pi / 2);
             const double expected = irradiance_by_quadrature(angle, altitude);
             // Midpoints miss by the square of a step times the kink: 1e-6 of the whole cap's.
-            const double whole = 4 * kPi / 3 * std::pow(std::sin(angle), 3);
+            const double whole = 4 * pi / 3 * std::pow(std::sin(angle), 3);
             EXPECT_NEAR(cap_irradiance(angle, altitude), expected, 2e-6 * whole)
                 << angle << " " << altitude;
         }

@@ -23,7 +23,7 @@ TEST(Microfacet, ProjectedAreaOfTheMirrorsIsOne) {
         for (int i = 0; i < kSteps; ++i) {
             const double v = (i + 0.5) / kSteps, s = v / (1 - v);
             const double polar = std::atan(alpha * s), cosine = std::cos(polar);
-            sum += facets.normal_density(direction_at(polar, 0.3)) * cosine * 4 * kPi *
+            sum += facets.normal_density(direction_at(polar, 0.3)) * cosine * 4 * pi *
                    std::pow(std::sin(polar), 2) * alpha * cosine * cosine / ((1 - v) * (1 - v));
         }
         EXPECT_NEAR(sum / kSteps, 1, 1e-8) << roughness;
@@ -39,7 +39,7 @@ TEST(Microfacet, MirrorsSeenFillWhatIsSeenOfTheSurface) {
             const Vec4 v = direction_at(polar, 0);
             const double area = integral(
                 [&](const Vec4& m) { return std::max(0.0, v.dot(m)) * facets.normal_density(m); },
-                0, kPi / 2, 0, kPi, 700);
+                0, pi / 2, 0, pi, 700);
             EXPECT_NEAR(facets.visible_part(v) * area, std::cos(polar), 2e-5)
                 << roughness << " " << polar;
         }
@@ -88,8 +88,8 @@ TEST(Microfacet, DensityIntegratesToOne) {
         for (double polar : {0.1, 0.8, 1.4}) {
             const Microfacet facets(roughness);
             const Vec4 out = direction_at(polar, 0);
-            EXPECT_NEAR(integral([&](const Vec4& in) { return facets.density(out, in); }, 0, kPi, 0,
-                                 kPi, 1200),
+            EXPECT_NEAR(integral([&](const Vec4& in) { return facets.density(out, in); }, 0, pi, 0,
+                                 pi, 1200),
                         1, 1.5e-3)
                 << roughness << " " << polar;
         }
@@ -112,10 +112,10 @@ TEST(Microfacet, SamplesFollowTheirDensity) {
                 ASSERT_NEAR(in.norm(), 1, 1e-14);
                 const double across = in.head<3>().norm();
                 const int row =
-                    std::min(kRows - 1, static_cast<int>(kRows * std::atan2(across, in[3]) / kPi));
+                    std::min(kRows - 1, static_cast<int>(kRows * std::atan2(across, in[3]) / pi));
                 const int column = std::clamp(
                     static_cast<int>(kColumns * std::acos(std::clamp(in[0] / across, -1.0, 1.0)) /
-                                     kPi),
+                                     pi),
                     0, kColumns - 1);
                 ++count[static_cast<std::size_t>(kColumns * row + column)];
                 const double weight =
@@ -129,9 +129,8 @@ TEST(Microfacet, SamplesFollowTheirDensity) {
                 for (int column = 0; column < kColumns; ++column) {
                     const double expected =
                         kCount * integral([&](const Vec4& in) { return facets.density(out, in); },
-                                          kPi * row / kRows, kPi * (row + 1) / kRows,
-                                          kPi * column / kColumns, kPi * (column + 1) / kColumns,
-                                          60);
+                                          pi * row / kRows, pi * (row + 1) / kRows,
+                                          pi * column / kColumns, pi * (column + 1) / kColumns, 60);
                     const double c = count[static_cast<std::size_t>(kColumns * row + column)];
                     if (expected < 20) {
                         rest += c, rest_expected += expected;

@@ -11,7 +11,7 @@
 namespace tesserae::render {
 namespace {
 
-constexpr double kRoughnesses[] = {0.4, 0.6, 1.0};
+constexpr double kTabulated[] = {0.4, 0.6, 1.0};
 constexpr double kPolars[] = {0.0, 0.7, 1.2, 1.5};
 const Color kWhite = Color::Ones();
 /// Of E: from 33 nodes between which it is a straight line (4e-4), means of 48 x 48 mirrors (2e-4),
@@ -19,7 +19,7 @@ const Color kWhite = Color::Ones();
 constexpr double kTable = 1e-3;
 
 TEST(RoughReflection, WhiteSurfaceLosesNothing) {
-    for (double roughness : kRoughnesses) {
+    for (double roughness : kTabulated) {
         const RoughReflection rough(roughness);
         for (double polar : kPolars) {
             const Vec4 out = direction_at(polar, 0);
@@ -32,7 +32,7 @@ TEST(RoughReflection, WhiteSurfaceLosesNothing) {
 }
 
 TEST(RoughReflection, KnowsWhatOneReflectionSendsBack) {
-    for (double roughness : kRoughnesses) {
+    for (double roughness : kTabulated) {
         const RoughReflection rough(roughness);
         const Microfacet facets(roughness);
         for (double polar : kPolars) {
@@ -94,13 +94,13 @@ TEST(RoughReflection, IsReciprocal) {
 
 TEST(RoughReflection, DensityIntegratesToOneAndItsSamplesWeighLittle) {
     Random random(532);
-    for (double roughness : kRoughnesses) {
+    for (double roughness : kTabulated) {
         const RoughReflection rough(roughness);
         for (double polar : {0.1, 0.8, 1.4}) {
             const Vec4 out = direction_at(polar, 0);
             // The bound of Microfacet.DensityIntegratesToOne.
-            EXPECT_NEAR(integral([&](const Vec4& in) { return rough.density(out, in); }, 0, kPi, 0,
-                                 kPi, 1200),
+            EXPECT_NEAR(integral([&](const Vec4& in) { return rough.density(out, in); }, 0, pi, 0,
+                                 pi, 1200),
                         1, 1.5e-3)
                 << roughness << " " << polar;
             // The mean of value * cos / density is the albedo, 1: so `sample` follows `density`.

@@ -249,7 +249,7 @@ TEST(BrokenScene, SaysWhereAndWhat) {
     }
 }
 
-/// Without the settings in scenes/toml_declarations.hpp each of these texts breaks an assertion of
+/// Without the settings in toml_declarations.hpp each of these texts breaks an assertion of
 /// toml++ 3.3. The place is the character that it does not expect.
 TEST(TomlLibrary, RefusesWhatItTakesForGranted) {
     const std::vector<std::pair<const char*, const char*>> texts = {

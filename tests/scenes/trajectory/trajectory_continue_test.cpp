@@ -55,7 +55,7 @@ class TrajectoryContinue : public ::testing::Test {
         return path;
     }
 
-    const testing::TemporaryFolder folder_{"continue"};
+    const tesserae::testing::TemporaryFolder folder_{"continue"};
     const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
 

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBodies = 5;
+constexpr std::size_t kKilledBodies = 5;
 /// A tree node of HDF5's default format has 64 entries: rows 65 and 122 split one.
-constexpr std::uint64_t kRows = 128;
+constexpr std::uint64_t kKilledRows = 128;
 
 /// Runs `work` in a child, stopped before every system call that changes a file.
 /// @return its exit status, -1 if it cannot be traced
@@ -71,8 +71,8 @@ class SharedCount {
 };
 
 /// The scene whose trajectory has so many rows.
-TrajectoryHeader header_of(std::uint64_t rows) {
-    TrajectoryHeader header = make_header(kBodies);
+TrajectoryHeader killed_header(std::uint64_t rows) {
+    TrajectoryHeader header = make_header(kKilledBodies);
     header.source = "run " + std::string(rows, 'x');
     header.hash = std::to_string(rows);
     return header;
@@ -83,13 +83,13 @@ void expect_whole(const fs::path& file, std::uint64_t flushed) {
     const TrajectoryReader reader(file);
     ASSERT_GE(reader.rows(), flushed);
     EXPECT_EQ(reader.facts().size(), reader.rows());
-    Bodies bodies = make_row(0, kBodies).bodies;
+    Bodies bodies = make_row(0, kKilledBodies).bodies;
     // The last rows, which are beside what changes, and some of all the others.
     for (std::uint64_t row = 0; row < reader.rows(); ++row) {
         if (row + 8 < reader.rows() && row % 32 != 0) continue;
         ASSERT_EQ(reader.steps()[row], 3 * row);
         reader.read_row(row, bodies);
-        const Row made = make_row(row, kBodies);
+        const Row made = make_row(row, kKilledBodies);
         ASSERT_EQ(bodies.position, made.bodies.position) << "row " << row;
         ASSERT_EQ(bodies.rotor, made.bodies.rotor) << "row " << row;
         ASSERT_EQ(bodies.velocity, made.bodies.velocity) << "row " << row;
@@ -98,14 +98,14 @@ void expect_whole(const fs::path& file, std::uint64_t flushed) {
 
 /// A copy is continued from its last flush on.
 void expect_continued(const fs::path& file, std::uint64_t flushed) {
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "copy.h5";
     fs::copy_file(file, path.string() + ".partial");
-    const TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
+    const TrajectoryWriter writer(path, make_header(kKilledBodies), make_steps(kKilledRows), false);
     ASSERT_GE(writer.rows(), flushed) << writer.note();
-    Bodies bodies = make_row(0, kBodies).bodies;
+    Bodies bodies = make_row(0, kKilledBodies).bodies;
     ASSERT_TRUE(writer.resume(bodies).has_value());
-    EXPECT_EQ(bodies.rotor, make_row(writer.rows() - 1, kBodies).bodies.rotor);
+    EXPECT_EQ(bodies.rotor, make_row(writer.rows() - 1, kKilledBodies).bodies.rotor);
 }
 
 /// Traces `work`, which writes below `path` and counts what it has flushed, and checks every state.
@@ -130,17 +130,17 @@ void expect_whole_at_every_write(const fs::path& path, const SharedCount& flushe
     if (status == -1) GTEST_SKIP() << "processes cannot be traced here";
     EXPECT_EQ(status, 0);
     EXPECT_GE(states, 300);
-    expect_whole(path, kRows);
+    expect_whole(path, kKilledRows);
 }
 
 TEST(TrajectoryKill, AtEveryWriteTheFileHoldsTheLastFlush) {
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "film.h5";
     SharedCount flushed;
     expect_whole_at_every_write(path, flushed, [&] {
-        TrajectoryWriter writer(path, make_header(kBodies), make_steps(kRows), false);
-        for (std::uint64_t row = 1; row <= kRows; ++row) {
-            append_rows(writer, row, kBodies);
+        TrajectoryWriter writer(path, make_header(kKilledBodies), make_steps(kKilledRows), false);
+        for (std::uint64_t row = 1; row <= kKilledRows; ++row) {
+            append_rows(writer, row, kKilledBodies);
             const bool splits = (row > 62 && row < 68) || row > 119;
             if (!splits && row % 20 != 1) continue;
             writer.flush();
@@ -152,42 +152,42 @@ TEST(TrajectoryKill, AtEveryWriteTheFileHoldsTheLastFlush) {
 
 TEST(TrajectoryKill, AtEveryWriteOfAnInterruptedRunTheFileHoldsTheLastFlush) {
     // Each run has another text, and rows that were not flushed are cut off again.
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "film.h5";
     SharedCount flushed;
     expect_whole_at_every_write(path, flushed, [&] {
-        for (std::uint64_t end = 14; flushed.get() < kRows; end += 19) {
-            TrajectoryWriter writer(path, header_of(end), make_steps(kRows), false);
-            append_rows(writer, std::min(end, kRows), kBodies);
+        for (std::uint64_t end = 14; flushed.get() < kKilledRows; end += 19) {
+            TrajectoryWriter writer(path, killed_header(end), make_steps(kKilledRows), false);
+            append_rows(writer, std::min(end, kKilledRows), kKilledBodies);
             writer.flush();
             flushed.set(writer.rows());
-            if (writer.rows() == kRows) writer.finish();
+            if (writer.rows() == kKilledRows) writer.finish();
         }
     });
 }
 
 /// A copy of the folder is continued from what is furthest in it.
 void expect_continued_for_longer(const fs::path& path, std::uint64_t rows) {
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path copy = folder / "copy.h5";
     fs::copy_file(path, copy);
     if (fs::exists(path.string() + ".partial"))
         fs::copy_file(path.string() + ".partial", copy.string() + ".partial");
-    TrajectoryWriter writer(copy, header_of(kRows), make_steps(kRows), false);
+    TrajectoryWriter writer(copy, killed_header(kKilledRows), make_steps(kKilledRows), false);
     ASSERT_GE(writer.rows(), rows) << writer.note();
-    append_rows(writer, kRows, kBodies);
+    append_rows(writer, kKilledRows, kKilledBodies);
     writer.finish();
-    expect_whole(copy, kRows);
+    expect_whole(copy, kKilledRows);
 }
 
 TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "film.h5";
     // Each time what is there is continued, in a copy; rows 65 and 122 split a node.
-    const std::uint64_t ends[] = {3, 64, 65, 121, kRows};
+    const std::uint64_t ends[] = {3, 64, 65, 121, kKilledRows};
     {
-        TrajectoryWriter writer(path, header_of(ends[0]), make_steps(ends[0]), false);
-        append_rows(writer, ends[0], kBodies);
+        TrajectoryWriter writer(path, killed_header(ends[0]), make_steps(ends[0]), false);
+        append_rows(writer, ends[0], kKilledBodies);
         writer.finish();
     }
     SharedCount finished;
@@ -196,8 +196,8 @@ TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
     const auto work = [&] {
         for (std::uint64_t end : ends) {
             if (end == ends[0]) continue;
-            TrajectoryWriter writer(path, header_of(end), make_steps(end), false);
-            append_rows(writer, end, kBodies);
+            TrajectoryWriter writer(path, killed_header(end), make_steps(end), false);
+            append_rows(writer, end, kKilledBodies);
             writer.finish();
             finished.set(end);
         }
@@ -217,26 +217,26 @@ TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
     if (status == -1) GTEST_SKIP() << "processes cannot be traced here";
     EXPECT_EQ(status, 0);
     EXPECT_GE(states, 300);
-    expect_whole(path, kRows);
+    expect_whole(path, kKilledRows);
 }
 
 TEST(TrajectoryKill, AtEveryWriteOfAFileWithoutItsNameTheFileHoldsTheLastFlush) {
     // Killed just before the rename, then wanted longer: nothing else holds its rows.
-    const testing::TemporaryFolder folder("kill");
+    const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "film.h5";
     constexpr std::uint64_t kFinished = 50;
     {
-        TrajectoryWriter writer(path, header_of(kFinished), make_steps(kFinished), false);
-        append_rows(writer, kFinished, kBodies);
+        TrajectoryWriter writer(path, killed_header(kFinished), make_steps(kFinished), false);
+        append_rows(writer, kFinished, kKilledBodies);
         writer.finish();
     }
     fs::rename(path, path.string() + ".partial");
     SharedCount flushed;
     flushed.set(kFinished);
     expect_whole_at_every_write(path, flushed, [&] {
-        TrajectoryWriter writer(path, header_of(kRows), make_steps(kRows), false);
-        for (std::uint64_t row = kFinished + 1; row <= kRows; ++row) {
-            append_rows(writer, row, kBodies);
+        TrajectoryWriter writer(path, killed_header(kKilledRows), make_steps(kKilledRows), false);
+        for (std::uint64_t row = kFinished + 1; row <= kKilledRows; ++row) {
+            append_rows(writer, row, kKilledBodies);
             if (row > 68 && row % 8 != 0) continue;
             writer.flush();
             flushed.set(row);

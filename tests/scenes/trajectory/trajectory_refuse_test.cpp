@@ -32,7 +32,7 @@ class TrajectoryRefuse : public ::testing::Test {
         append_rows(writer, rows, header.bodies);
     }
 
-    const testing::TemporaryFolder folder_{"trajectory"};
+    const tesserae::testing::TemporaryFolder folder_{"trajectory"};
     const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
 
