@@ -1,12 +1,26 @@
-# Sourced by scenes/run.sh and tests/run.sh: installs what is missing (Debian 12) and builds.
+# Sourced by scenes/run.sh and tests/run.sh: installs what is missing (Debian 12 and 13) and builds.
 # Sets `root` to the checkout. Costs under two seconds when there is nothing to do.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+# What is needed, by purpose, with the versions of Debian 12 and 13, both of which work; Ubuntu
+# 24.04 has the same names and versions between these.
 packages=(
-    g++ cmake ninja-build ccache pkg-config
-    libtbb-dev libeigen3-dev libembree-dev libopenexr-dev libpng-dev libhdf5-dev zlib1g-dev
-    libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
-    libgtest-dev
+    g++                   # a C++20 compiler: g++ 12.2, 14.2; clang++ 14, 19 do as well
+    cmake ninja-build     # 3.25, 3.31
+    pkg-config
+    ccache                # what was compiled before is not compiled again; may be missing
+    libtbb-dev            # threads: oneTBB 2021.8, 2022.1
+    libeigen3-dev         # linear algebra: Eigen 3.4
+    libembree-dev         # rays through a lens or a shutter: Embree 3.13, 4.3
+    libopenexr-dev        # frames: OpenEXR 3.1
+    libpng-dev zlib1g-dev # previews
+    libhdf5-dev           # trajectories: HDF5 1.10, 1.14, without MPI
+    libtomlplusplus-dev   # scene files: toml++ 3.3, 3.4
+    libcli11-dev          # command line: CLI11 2.1, 2.4
+    libfmt-dev            # text: fmt 9.1, 10.1
+    nlohmann-json3-dev    # JSON 3.11
+    libxxhash-dev         # hashes: xxHash 0.8
+    libgtest-dev          # tests: GoogleTest 1.12, 1.16
 )
 
 missing_packages() {
@@ -20,12 +34,14 @@ install_packages() {
     local id="" version="" missing as_root=()
     [ -r /etc/os-release ] && id=$(. /etc/os-release && echo "${ID:-}") &&
         version=$(. /etc/os-release && echo "${VERSION_ID:-}")
-    if [ "$id" != debian ] || [ "$version" != 12 ]; then
-        echo "This script knows Debian 12 only; here is ${id:-an unknown system} ${version}." >&2
-        echo "Install what these Debian packages hold, then build with cmake (see README.md):" >&2
-        echo "  ${packages[*]}" >&2
-        exit 1
-    fi
+    case "$id $version" in
+    "debian 12" | "debian 13") ;;
+    *)
+        echo "Packages are installed on Debian 12 and 13 only; here is ${id:-an unknown system} ${version}." >&2
+        echo "This builds with what is there. Needed (scenes/setup.sh says what for): $*" >&2
+        return
+        ;;
+    esac
     missing=$(missing_packages "$@")
     [ -z "$missing" ] && return
     if [ "$(id -u)" != 0 ]; then
@@ -41,10 +57,12 @@ install_packages() {
         apt-get install -y -qq --no-install-recommends $missing >&2
 }
 
-# build FOLDER TARGET CMAKE-OPTIONS...: configures once, then builds what changed.
+# build FOLDER TARGET CMAKE-OPTIONS...: configures once, then builds what changed. Warnings stop a
+# check of the project (CI=true), not a user.
 build() {
     local folder=$1 target=$2 log
     shift 2
+    [ -z "${CI:-}" ] || set -- -DCMAKE_COMPILE_WARNING_AS_ERROR=ON "$@"
     mkdir -p "$folder"
     log=$folder/configure.log
     if [ ! -f "$folder/build.ninja" ]; then

@@ -65,6 +65,7 @@ case "${1:-}" in
     test_build release "fast|slow" -DCMAKE_BUILD_TYPE=Release
     ;;
 --all)
+    export CI=true  # warnings are errors
     install_packages "${packages[@]}" clang libclang-rt-14-dev dpkg-dev
     clang=(-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++)
     check release -DCMAKE_BUILD_TYPE=Release
