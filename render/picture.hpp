@@ -6,7 +6,9 @@
 #include <string>
 
 #include "core/dynamics/bodies.hpp"
+#include "core/dynamics/motion_version.hpp"
 #include "render/description.hpp"
+#include "render/picture_version.hpp"
 
 // What a frame is asked to show, and what was counted while it was rendered.
 namespace tesserae::render {
@@ -28,8 +30,10 @@ struct Picture {
 struct FrameInfo {
     std::string scene_name, scene_hash, program_version;
     int frame = 0;
-    double time = 0;       ///< [s]
-    std::string id_names;  ///< JSON: names of the object ids
+    double time = 0;                      ///< [s]
+    std::string id_names;                 ///< JSON: names of the object ids
+    int motion_version = kMotionVersion;  ///< by which the bodies came to where they are
+    int picture_version = kPictureVersion;
 };
 
 /// A sample of a pixel; by rows, then columns.

@@ -11,6 +11,7 @@
 #include "render/file/file_writer.hpp"
 #include "render/file/image_info.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/versions.hpp"
 #include "scenes/poses.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"
@@ -30,21 +31,35 @@ std::string read_text(const fs::path& file) {
     return text.str();
 }
 
-/// A whole frame of this scene is there already.
-bool is_done(const Scene& scene, const fs::path& exr, const fs::path& png, bool overwrite) {
-    if (!fs::exists(exr)) return false;
-    std::string hash;
+/// How a frame that has another hash differs from those that would be made of a scene.
+std::string other_frame(const Scene& scene, const render::ImageInfo& there,
+                        const render::FrameInfo& here) {
+    const bool same_scene = there.scene_hash == frame_hash(scene.effective, there.picture_version,
+                                                           there.motion_version);
+    if (same_scene && there.picture_version != here.picture_version)
+        return fmt::format("is a frame of picture version {}, this program makes version {}",
+                           there.picture_version, here.picture_version);
+    if (same_scene && there.motion_version != here.motion_version)
+        return fmt::format("shows bodies moved by motion version {}, here by version {}",
+                           there.motion_version, here.motion_version);
+    return fmt::format("is a frame of another scene (hash {}, here {})", there.scene_hash,
+                       here.scene_hash);
+}
+
+/// A whole frame of this scene and these versions is there already.
+bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
+             bool overwrite) {
+    if (!fs::exists(files.exr)) return false;
+    render::ImageInfo there;
     try {
-        hash = render::read_image_info(exr).scene_hash;
+        there = render::read_image_info(files.exr);
     } catch (const InputError&) {
         if (!overwrite) throw;
     }
-    if (hash != scene.hash && !overwrite)
-        throw InputError(
-            fmt::format("{}: is a frame of another scene (hash {}, here {}); choose "
-                        "another folder, or --overwrite",
-                        exr.string(), hash, scene.hash));
-    return hash == scene.hash && fs::exists(png);
+    if (there.scene_hash == info.scene_hash) return fs::exists(files.preview);
+    if (overwrite) return false;
+    throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",
+                                 files.exr.string(), other_frame(scene, there, info)));
 }
 
 /// The bodies' names by object id (body number + 1), as a JSON object: "first-last" for lattices.
@@ -161,7 +176,8 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
 
     render::FrameInfo info;
     info.scene_name = scene.name;
-    info.scene_hash = scene.hash;
+    info.motion_version = poses.motion_version();
+    info.scene_hash = frame_hash(scene.effective, info.picture_version, info.motion_version);
     info.program_version = TESSERAE_VERSION;
     info.id_names = id_names(scene);
 
@@ -174,7 +190,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         const render::FrameFiles files = {report.frames / (stem + ".exr"),
                                           folder / "preview" / (stem + ".png")};
         report.preview = files.preview;
-        if (is_done(scene, files.exr, files.preview, overwrite)) {
+        if (is_done(scene, info, files, overwrite)) {
             progress.start_at(++report.kept);
             continue;
         }

@@ -9,6 +9,7 @@
 #include "scenes/memory.hpp"
 #include "scenes/plan_picture.hpp"
 #include "scenes/timeline.hpp"
+#include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -136,7 +137,10 @@ Plan make_plan(const Scene& scene, int threads) {
     if (scene.camera.shutter > 0)
         plan.memory_bytes += kPictureBytes * plan.bodies *
                              render::most_instants(plan.bodies, static_cast<int>(samples));
-    if (plan.moves) plan.trajectory_bytes = 2 * plan.frames * plan.bodies * kStateBytes;
+    if (plan.moves)
+        plan.trajectory_bytes =
+            plan.bodies * (2 * plan.frames * kStateBytes +
+                           description_bytes({scene.bodies.types, scene.bodies.type, scene.names}));
 
     decide_physics(scene, plan);
     decide_picture(scene, plan);

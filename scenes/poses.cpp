@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/versions.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
@@ -14,7 +16,8 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
     if (trajectory.empty()) return;
     trajectory_ = std::make_unique<TrajectoryReader>(trajectory);
     const TrajectoryHeader& header = trajectory_->header();
-    if (header.motion_hash != scene.motion_hash)
+    // A trajectory of another motion version shows the same scene: it is rendered as it is.
+    if (header.motion_hash != scenes::motion_hash(scene.effective, header.motion_version))
         throw InputError(fmt::format(
             "{}: is a trajectory of another motion: {}; simulate this scene, or render "
             "the one that "
@@ -36,6 +39,10 @@ std::uint64_t Poses::row_of(std::uint64_t step) const {
     const auto& steps = trajectory_->steps();
     const auto at = std::lower_bound(steps.begin(), steps.end(), step);
     return at != steps.end() && *at == step ? at - steps.begin() : trajectory_->rows();
+}
+
+int Poses::motion_version() const {
+    return trajectory_ ? trajectory_->header().motion_version : kMotionVersion;
 }
 
 const Bodies& Poses::at(const FrameInstant& instant) {

@@ -24,6 +24,9 @@ class Poses {
     /// Valid until the next call.
     const Bodies& at(const FrameInstant& instant);
 
+    /// By which the trajectory was made; that of the program for a still.
+    int motion_version() const;
+
   private:
     std::uint64_t row_of(std::uint64_t step) const;
 

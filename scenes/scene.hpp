@@ -10,15 +10,9 @@
 #include "core/dynamics/settings.hpp"
 #include "render/description.hpp"
 #include "scenes/camera_path.hpp"
+#include "scenes/named_bodies.hpp"
 
 namespace tesserae::scenes {
-
-/// A run of consecutive bodies under one name: a [[body]] or a [[lattice]].
-struct NamedBodies {
-    std::string name;
-    BodyId first = 0;
-    std::uint32_t count = 1;
-};
 
 /// A scene file, checked, overridden and expanded: all that simulating and rendering need.
 struct Scene {
@@ -37,7 +31,7 @@ struct Scene {
     std::string source;     ///< the file's text as read
     std::string effective;  ///< canonical TOML after overrides: the same scene gives the same text
     std::string hash;       ///< 32 hex digits of `effective`
-    std::string motion_hash;  ///< 32 hex digits of its part that moves bodies: see motion_part()
+    std::string motion_hash;  ///< of a trajectory that this program makes of it
 };
 
 }  // namespace tesserae::scenes

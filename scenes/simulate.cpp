@@ -5,6 +5,7 @@
 
 #include "core/dynamics/energy.hpp"
 #include "core/dynamics/momentum.hpp"
+#include "core/dynamics/motion_version.hpp"
 #include "core/dynamics/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
@@ -29,15 +30,18 @@ TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every) {
     header.bodies = scene.bodies.size();
     header.steps_per_second = scene.physics ? scene.physics->steps_per_second : 1;
     header.store_every = store_every;
+    header.motion_version = kMotionVersion;
+    header.described = {scene.bodies.types, scene.bodies.type, scene.names};
     return header;
 }
 
-/// `file` is there, whole, and holds just these steps of this motion.
+/// `file` is there, whole, and holds just these steps of this motion by this program's law.
 bool is_complete(const Scene& scene, const fs::path& file, const std::vector<std::uint64_t>& steps,
                  bool overwrite) {
     if (overwrite || !fs::exists(file)) return false;
     const TrajectoryReader there(file);
-    return there.header().motion_hash == scene.motion_hash && there.steps() == steps;
+    return there.header().motion_hash == scene.motion_hash &&
+           there.header().motion_version == kMotionVersion && there.steps() == steps;
 }
 
 StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& found,

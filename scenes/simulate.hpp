@@ -26,7 +26,8 @@ std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_
 /// duration: the bytes of every dataset are those of one straight run.
 /// Runs on the threads of the caller's parallel::Threads.
 /// @param trace     records the stages of every step that is taken
-/// @throws InputError   `file` is of another motion, stores other steps or more than the scene's,
+/// @throws InputError   `file` is of another motion or motion version, stores other steps or more
+/// than the scene's,
 ///                      and not `overwrite`
 /// @throws RunError     a body left the finite range, or the file cannot be written
 /// @throws Stopped      after a signal; what is stored is kept

@@ -22,6 +22,7 @@
 
 #include "core/error.hpp"
 #include "render/file/file_writer.hpp"
+#include "render/file/image_info.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -136,7 +137,7 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
         header.insert(name, Imf::StringAttribute(value));
     };
     text("tesserae/scene", info.scene_name);
-    text("tesserae/sceneHash", info.scene_hash);
+    text(kSceneHashAttribute, info.scene_hash);
     text("tesserae/version", info.program_version);
     text("tesserae/idNames", info.id_names);
     text("tesserae/cameraOrigin", exact(camera.origin()));
@@ -146,6 +147,8 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     text("tesserae/cameraFourth", exact(camera.fourth()));
     header.insert("tesserae/fieldOfView", Imf::DoubleAttribute(description.field_of_view));
     header.insert("tesserae/time", Imf::DoubleAttribute(info.time));
+    header.insert(kMotionVersionAttribute, Imf::IntAttribute(info.motion_version));
+    header.insert(kPictureVersionAttribute, Imf::IntAttribute(info.picture_version));
     header.insert("tesserae/frame", Imf::IntAttribute(info.frame));
     header.insert("tesserae/samples", Imf::IntAttribute(settings.samples));
     return header;

@@ -20,7 +20,7 @@ struct PackedTile {
 /// finish() nothing is left.
 /// Header attributes beside the standard ones, all of them functions of the scene:
 ///   tesserae/scene, tesserae/sceneHash, tesserae/version, tesserae/idNames (JSON)   string
-///   tesserae/frame, tesserae/samples                                                int
+///   tesserae/frame, tesserae/samples, tesserae/motionVersion, tesserae/pictureVersion   int
 ///   tesserae/time [s], tesserae/fieldOfView [degrees]                               double
 ///   tesserae/cameraOrigin, cameraRight, cameraUp, cameraForward, cameraFourth
 ///                                                   string: four numbers that read back exactly

@@ -11,25 +11,54 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
+#include <string_view>
+
 #include "core/error.hpp"
 
 namespace tesserae::render {
 namespace {
 
-/// The value of an attribute of a simple type as text; empty for all others.
-std::string text_of(const Imf::Attribute& attribute) {
-    if (const auto* a = dynamic_cast<const Imf::StringAttribute*>(&attribute)) return a->value();
+/// The four numbers of a camera's vector, which ExrWriter stores as a text; none: it is none.
+std::vector<double> camera_vector(std::string_view name, const std::string& text) {
+    if (!name.starts_with("tesserae/camera")) return {};
+    std::vector<double> numbers(4);
+    const char *at = text.data(), *const end = at + text.size();
+    for (double& number : numbers) {
+        const auto [next, error] = std::from_chars(at, end, number);
+        const bool is_last = &number == &numbers.back();
+        if (error != std::errc() || (next == end) != is_last) return {};
+        if (!is_last && *next != ' ') return {};
+        at = next + (is_last ? 0 : 1);
+    }
+    return numbers;
+}
+
+/// An attribute of a simple type; one without a text for all others.
+ImageAttribute attribute_of(const char* name, const Imf::Attribute& attribute) {
+    if (const auto* a = dynamic_cast<const Imf::StringAttribute*>(&attribute)) {
+        if (auto vector = camera_vector(name, a->value()); !vector.empty())
+            return {name, std::move(vector), a->value()};
+        return {name, a->value(), a->value()};
+    }
     if (const auto* a = dynamic_cast<const Imf::IntAttribute*>(&attribute))
-        return fmt::format("{}", a->value());
+        return {name, std::int64_t{a->value()}, fmt::format("{}", a->value())};
     if (const auto* a = dynamic_cast<const Imf::FloatAttribute*>(&attribute))
-        return fmt::format("{}", a->value());
+        return {name, double{a->value()}, fmt::format("{}", a->value())};
     if (const auto* a = dynamic_cast<const Imf::DoubleAttribute*>(&attribute))
-        return fmt::format("{}", a->value());
+        return {name, a->value(), fmt::format("{}", a->value())};
     if (const auto* a = dynamic_cast<const Imf::RationalAttribute*>(&attribute))
-        return fmt::format("{}/{}", a->value().n, a->value().d);
+        return {name, std::vector<std::int64_t>{a->value().n, a->value().d},
+                fmt::format("{}/{}", a->value().n, a->value().d)};
     if (const auto* a = dynamic_cast<const Imf::FloatVectorAttribute*>(&attribute))
-        return fmt::format("{}", fmt::join(a->value(), ", "));
-    return {};
+        return {name, std::vector<double>(a->value().begin(), a->value().end()),
+                fmt::format("{}", fmt::join(a->value(), ", "))};
+    return {name, {}, {}};
+}
+
+void read_version(const Imf::Header& header, const char* name, int& version) {
+    if (const auto* found = header.findTypedAttribute<Imf::IntAttribute>(name))
+        version = found->value();
 }
 
 }  // namespace
@@ -47,10 +76,12 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
         for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
             info.channels.emplace_back(c.name());
         for (auto a = header.begin(); a != header.end(); ++a)
-            if (std::string text = text_of(a.attribute()); !text.empty())
-                info.attributes.emplace_back(a.name(), std::move(text));
+            if (ImageAttribute found = attribute_of(a.name(), a.attribute()); !found.text.empty())
+                info.attributes.push_back(std::move(found));
         if (const auto* hash = header.findTypedAttribute<Imf::StringAttribute>(kSceneHashAttribute))
             info.scene_hash = hash->value();
+        read_version(header, kMotionVersionAttribute, info.motion_version);
+        read_version(header, kPictureVersionAttribute, info.picture_version);
     } catch (const std::exception& error) {
         throw InputError(
             fmt::format("{}: not a readable OpenEXR image: {}", file.string(), error.what()));

@@ -20,6 +20,7 @@ std::string list(const double* values, int count) {
 enum class Lines {
     kAll,
     kMotion,  ///< those that decide how bodies move
+    kNames,   ///< those that give bodies their names
 };
 
 /// Walks the lines of an effective text and knows in which table it is.
@@ -42,7 +43,7 @@ class Walker {
 
     void next() {
         do next_line();
-        while (lines_ == Lines::kMotion && !at_end_ && !decides_motion());
+        while (!at_end_ && !is_looked_at());
     }
 
   private:
@@ -61,10 +62,18 @@ class Walker {
         name_ = {};
     }
 
-    bool decides_motion() const {
-        if (header_ == "[physics]") return key() != "duration";
-        if (header_ != "[[body]]" && header_ != "[[lattice]]") return false;
-        return key() != "name" && key() != "material" && key() != "visible";
+    bool is_looked_at() const {
+        const bool is_of_bodies = header_ == "[[body]]" || header_ == "[[lattice]]";
+        switch (lines_) {
+            case Lines::kAll:
+                return true;
+            case Lines::kMotion:
+                if (header_ == "[physics]") return key() != "duration";
+                return is_of_bodies && key() != "name" && key() != "material" && key() != "visible";
+            case Lines::kNames:
+                return is_of_bodies && key() == "name";
+        }
+        return true;
     }
 
     std::string_view before_equals() const {
@@ -168,6 +177,10 @@ std::string motion_part(std::string_view effective) {
 
 std::string first_difference(const std::string& there, const std::string& here) {
     return difference(Walker(there, Lines::kAll), Walker(here, Lines::kAll));
+}
+
+bool same_body_names(std::string_view there, std::string_view here) {
+    return difference(Walker(there, Lines::kNames), Walker(here, Lines::kNames)).empty();
 }
 
 std::string first_motion_difference(const std::string& there, const std::string& here) {

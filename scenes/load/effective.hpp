@@ -45,6 +45,9 @@ class EffectiveWriter {
 /// on: not how they are shown or called, nor for how long they move.
 std::string motion_part(std::string_view effective);
 
+/// The bodies of two effective scenes of the same motion have the same names.
+bool same_body_names(std::string_view there, std::string_view here);
+
 /// The first key in which two effective scenes differ, with both values: "render.samples: 16 there,
 /// 4 here". Empty if they are equal.
 std::string first_difference(const std::string& there, const std::string& here);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
 #include "scenes/load/hash.hpp"
 #include "scenes/load/load_parts.hpp"
+#include "scenes/load/versions.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -104,7 +106,7 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     require_view(scene, origin);
 
     scene.hash = hex_hash(out.text());
-    scene.motion_hash = hex_hash(motion_part(out.text()));
+    scene.motion_hash = motion_hash(out.text(), kMotionVersion);
     scene.effective = out.take_text();
     return scene;
 }

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
+#include "render/picture_version.hpp"
 #include "scenes/generate.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
@@ -128,7 +130,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CommandLine line;
     Typed typed;
     CLI::App app("tesserae: rigid bodies in four dimensions, simulated and filmed", "tesserae");
-    app.set_version_flag("--version", "tesserae " TESSERAE_VERSION);
+    app.set_version_flag("--version",
+                         fmt::format("tesserae {} (motion version {}, picture version {})",
+                                     TESSERAE_VERSION, kMotionVersion, render::kPictureVersion));
     app.require_subcommand(1);
     app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 

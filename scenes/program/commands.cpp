@@ -169,10 +169,11 @@ void info_command(const CommandLine& line) {
     const auto facts = facts_about(line.file, line.threads);
     if (line.json) {
         Json json = Json::object();
-        for (const auto& [name, value] : facts) json[name] = value;
-        fmt::print("{}\n", json.dump());
+        for (const Fact& fact : facts) json[fact.name] = fact.value;
+        // A file's texts need not be UTF-8.
+        fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
     } else {
-        for (const auto& [name, value] : facts) fmt::print("{:<24} {}\n", name, value);
+        for (const Fact& fact : facts) fmt::print("{:<24} {}\n", fact.name, fact.text);
     }
 }
 

@@ -16,46 +16,72 @@
 namespace tesserae::scenes {
 namespace {
 
-using Facts = std::vector<std::pair<std::string, std::string>>;
+using Facts = std::vector<Fact>;
+using Json = nlohmann::ordered_json;
+
+/// A number, or its name where JSON has none for it.
+Json json_number(double value) {
+    if (std::isfinite(value)) return value;
+    if (std::isnan(value)) return "nan";
+    return value > 0 ? "inf" : "-inf";
+}
+
+Fact text(const char* name, const std::string& value) { return {name, value, value}; }
+
+/// A whole number.
+template <class Number>
+Fact count(const char* name, Number value) {
+    return {name, value, fmt::format("{}", value)};
+}
 
 Facts scene_facts(const std::filesystem::path& file, int threads) {
     const Scene scene = load_scene(file, {});
     const Plan plan = make_plan(scene, threads);
-    return {{"kind", "scene"},
-            {"name", scene.name},
-            {"hash", scene.hash},
-            {"motion hash", scene.motion_hash},
-            {"bodies", fmt::format("{}", plan.bodies)},
-            {"movable bodies", fmt::format("{}", plan.movable_bodies)},
-            {"materials", fmt::format("{}", scene.materials.size())},
-            {"suns", fmt::format("{}", scene.lights.suns.size())},
-            {"point lights", fmt::format("{}", scene.lights.points.size())},
-            {"sphere lights", fmt::format("{}", scene.lights.spheres.size())},
-            {"steps", fmt::format("{}", plan.steps)},
-            {"frames", fmt::format("{}", plan.frames)},
-            {"size", fmt::format("{}x{}", scene.render.width, scene.render.height)},
-            {"samples", fmt::format("{}", scene.render.samples)}};
+    const auto [width, height] = std::pair(scene.render.width, scene.render.height);
+    return {text("kind", "scene"),
+            text("name", scene.name),
+            text("hash", scene.hash),
+            text("motion hash", scene.motion_hash),
+            count("bodies", plan.bodies),
+            count("movable bodies", plan.movable_bodies),
+            count("materials", scene.materials.size()),
+            count("suns", scene.lights.suns.size()),
+            count("point lights", scene.lights.points.size()),
+            count("sphere lights", scene.lights.spheres.size()),
+            count("steps", plan.steps),
+            count("frames", plan.frames),
+            {"size", {width, height}, fmt::format("{}x{}", width, height)},
+            count("samples", scene.render.samples)};
 }
 
 double energy_of(const StepFacts& row) { return row.kinetic_energy + row.potential_energy; }
 
+Fact energy(const char* name, const StepFacts& row) {
+    return {name,
+            {{"value", json_number(energy_of(row))},
+             {"unit", "J"},
+             {"kinetic", json_number(row.kinetic_energy)},
+             {"potential", json_number(row.potential_energy)}},
+            fmt::format("{:.9g} J: {:.6g} kinetic, {:.6g} potential", energy_of(row),
+                        row.kinetic_energy, row.potential_energy)};
+}
+
 /// The largest value of a function of the rows, and the step where it is first reached.
 template <class Value>
-std::string largest(const std::vector<StepFacts>& rows, Value&& value, const char* unit) {
+Fact largest(const char* name, const std::vector<StepFacts>& rows, Value&& value,
+             const char* unit) {
     const auto at = std::max_element(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
         return value(a) < value(b);
     });
-    return fmt::format("{:.3g} {} at step {}", value(*at), unit, at->step);
+    return {name,
+            {{"value", json_number(value(*at))}, {"unit", unit}, {"step", at->step}},
+            fmt::format("{:.3g} {} at step {}", value(*at), unit, at->step)};
 }
 
 /// How far the stored steps are from what an exact motion would keep. Gravity and bodies that move
 /// at a given velocity change energy and momentum too.
 void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
     const StepFacts &first = rows.front(), &last = rows.back();
-    const auto energy = [](const StepFacts& row) {
-        return fmt::format("{:.9g} J: {:.6g} kinetic, {:.6g} potential", energy_of(row),
-                           row.kinetic_energy, row.potential_energy);
-    };
     const auto energy_change = [&](const StepFacts& row) {
         return std::abs(energy_of(row) - energy_of(first));
     };
@@ -68,44 +94,65 @@ void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
     const auto penetration = [](const StepFacts& row) { return row.report.penetration; };
     const auto mean = [](const StepFacts& row) { return row.report.mean_penetration; };
     const auto residual = [](const StepFacts& row) { return row.report.residual; };
-    facts.insert(facts.end(),
-                 {{"last step", fmt::format("{}", last.step)},
-                  {"last time", fmt::format("{} s", last.time)},
-                  {"energy, first row", energy(first)},
-                  {"energy, last row", energy(last)},
-                  {"largest energy change", largest(rows, energy_change, "J")},
-                  {"momentum change", largest(rows, momentum_change, "kg m/s")},
-                  {"angular momentum change", largest(rows, angular_change, "kg m^2/s")},
-                  {"contacts, last row", fmt::format("{}", last.report.contacts)},
-                  {"asleep, last row", fmt::format("{} bodies", last.report.asleep)},
-                  {"deepest penetration", largest(rows, penetration, "m")},
-                  {"largest mean penetration", largest(rows, mean, "m")},
-                  {"largest solver residual", largest(rows, residual, "m/s")}});
+    facts.insert(facts.end(), {count("last step", last.step),
+                               {"last time",
+                                {{"value", json_number(last.time)}, {"unit", "s"}},
+                                fmt::format("{} s", last.time)},
+                               energy("energy, first row", first),
+                               energy("energy, last row", last),
+                               largest("largest energy change", rows, energy_change, "J"),
+                               largest("momentum change", rows, momentum_change, "kg m/s"),
+                               largest("angular momentum change", rows, angular_change, "kg m^2/s"),
+                               count("contacts, last row", last.report.contacts),
+                               {"asleep, last row", last.report.asleep,
+                                fmt::format("{} bodies", last.report.asleep)},
+                               largest("deepest penetration", rows, penetration, "m"),
+                               largest("largest mean penetration", rows, mean, "m"),
+                               largest("largest solver residual", rows, residual, "m/s")});
 }
 
 Facts trajectory_facts(const std::filesystem::path& file) {
     const TrajectoryReader trajectory(file);
     const TrajectoryHeader& header = trajectory.header();
-    Facts facts = {{"kind", "trajectory"},
-                   {"scene", header.scene_name},
-                   {"motion hash", header.motion_hash},
-                   {"written by", "tesserae " + header.program_version},
-                   {"bodies", fmt::format("{}", header.bodies)},
-                   {"steps per second", fmt::format("{}", header.steps_per_second)},
-                   {"rows", fmt::format("{}", trajectory.rows())}};
+    Facts facts = {text("kind", "trajectory"),
+                   text("scene", header.scene_name),
+                   text("motion hash", header.motion_hash),
+                   count("motion version", header.motion_version),
+                   text("written by", "tesserae " + header.program_version),
+                   count("bodies", header.bodies),
+                   {"steps per second", json_number(header.steps_per_second),
+                    fmt::format("{}", header.steps_per_second)},
+                   count("rows", trajectory.rows())};
     if (trajectory.rows() == 0) return facts;
     append_diagnostics(facts, trajectory.facts());
     return facts;
 }
 
+Json json_of(const render::ImageAttribute& attribute) {
+    if (const auto* real = std::get_if<double>(&attribute.value)) return json_number(*real);
+    if (const auto* reals = std::get_if<std::vector<double>>(&attribute.value)) {
+        Json list = Json::array();
+        for (double real : *reals) list.push_back(json_number(real));
+        return list;
+    }
+    return std::visit([](const auto& value) { return Json(value); }, attribute.value);
+}
+
 Facts image_facts(const std::filesystem::path& file) {
     const render::ImageInfo image = render::read_image_info(file);
     Facts facts = {
-        {"kind", "image"},
-        {"size", fmt::format("{}x{}", image.width, image.height)},
-        {"pixels held", fmt::format("{},{} to {},{}", image.x0, image.y0, image.x1, image.y1)},
-        {"channels", fmt::format("{}", fmt::join(image.channels, " "))}};
-    facts.insert(facts.end(), image.attributes.begin(), image.attributes.end());
+        text("kind", "image"),
+        {"size", {image.width, image.height}, fmt::format("{}x{}", image.width, image.height)},
+        {"pixels held",
+         {image.x0, image.y0, image.x1, image.y1},
+         fmt::format("{},{} to {},{}", image.x0, image.y0, image.x1, image.y1)},
+        {"channels", image.channels, fmt::format("{}", fmt::join(image.channels, " "))}};
+    if (!image.scene_hash.empty()) {
+        facts.push_back(count("motion version", image.motion_version));
+        facts.push_back(count("picture version", image.picture_version));
+    }
+    for (const render::ImageAttribute& attribute : image.attributes)
+        facts.push_back({attribute.name, json_of(attribute), attribute.text});
     return facts;
 }
 

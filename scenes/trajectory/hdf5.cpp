@@ -30,14 +30,6 @@ constexpr unsigned kDeflateLevel = 1;
 
 Handle property_list(hid_t of) { return {H5Pcreate(of), H5Pclose}; }
 
-Handle text_type(std::size_t bytes) {
-    Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-    checked(H5Tset_size(type.get(), std::max<std::size_t>(bytes, 1)));
-    checked(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
-    checked(H5Tset_cset(type.get(), H5T_CSET_UTF8));
-    return type;
-}
-
 Handle dataspace(const Extent& extent) {
     if (extent.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
     return {H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose};
@@ -167,6 +159,14 @@ void hard_link(hid_t parent, const std::string& from, const std::string& to) {
     checked(H5Lcreate_hard(parent, from.c_str(), parent, to.c_str(), H5P_DEFAULT, H5P_DEFAULT));
 }
 
+Handle text_type(std::size_t bytes) {
+    Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    checked(H5Tset_size(type.get(), std::max<std::size_t>(bytes, 1)));
+    checked(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
+    checked(H5Tset_cset(type.get(), H5T_CSET_UTF8));
+    return type;
+}
+
 Handle create_growing(hid_t parent, const std::string& name, hid_t type, const Extent& extent,
                       const Extent& chunk, bool compressed) {
     // A fixed axis of length 0 would be shorter than its chunk.
@@ -182,6 +182,8 @@ Handle create_growing(hid_t parent, const std::string& name, hid_t type, const E
         checked(H5Pset_shuffle(creation.get()));
         checked(H5Pset_deflate(creation.get(), kDeflateLevel));
     }
+    if (name.empty())
+        return {H5Dcreate_anon(parent, type, space.get(), creation.get(), H5P_DEFAULT), H5Dclose};
     return {H5Dcreate2(parent, name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(),
                        H5P_DEFAULT),
             H5Dclose};
@@ -231,6 +233,10 @@ void add_attribute(hid_t object, const std::string& name, hid_t file_type, hid_t
         H5Aclose);
     checked(H5Awrite(attribute.get(), memory_type, values));
     attribute.close();
+}
+
+bool has_attribute(hid_t object, const std::string& name) {
+    return checked(H5Aexists(object, name.c_str())) > 0;
 }
 
 void read_attribute(hid_t object, const std::string& name, hid_t memory_type, void* value) {

@@ -76,8 +76,11 @@ bool has_link(hid_t parent, const std::string& name);
 void remove_link(hid_t parent, const std::string& name);
 void hard_link(hid_t parent, const std::string& from, const std::string& to);
 
+/// A text of so many bytes, at least one: UTF-8, filled up with zeros.
+Handle text_type(std::size_t bytes);
+
 /// A dataset that grows along its first axis, in chunks of the given extent. `compressed`: shuffle
-/// and gzip.
+/// and gzip. Nothing leads to it yet if the name is empty.
 Handle create_growing(hid_t parent, const std::string& name, hid_t type, const Extent& extent,
                       const Extent& chunk, bool compressed);
 /// A fixed text as a scalar dataset of that length.
@@ -87,6 +90,7 @@ std::string read_text(hid_t parent, const std::string& name, std::uint64_t most_
 void add_text_attribute(hid_t object, const std::string& name, const std::string& text);
 void add_attribute(hid_t object, const std::string& name, hid_t file_type, hid_t memory_type,
                    const Extent& extent, const void* values);
+bool has_attribute(hid_t object, const std::string& name);
 /// A scalar. @throws Failure   missing, or not a number
 void read_attribute(hid_t object, const std::string& name, hid_t memory_type, void* value);
 

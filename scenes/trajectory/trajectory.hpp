@@ -4,24 +4,38 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/dynamics/bodies.hpp"
 #include "core/dynamics/memory.hpp"
+#include "scenes/named_bodies.hpp"
 
 // Trajectories as HDF5 files after H5MD 1.1 (h5md.nongnu.org), in the default file format. HDF5
 // here is built without locks of its own: use all of this from one thread at a time.
 namespace tesserae::scenes {
 
-/// What a trajectory says of itself. Only `motion_hash`, `bodies`, `steps_per_second` and
-/// `store_every` decide whether a file can be continued.
+/// What bodies are, beside how they move. Refers to lists that must outlive whoever has it.
+struct BodyDescriptions {
+    std::span<const BodyType> types;
+    std::span<const std::uint32_t> type;  ///< of every body: index into types
+    std::span<const NamedBodies> names;   ///< ascending, covering all bodies
+};
+
+/// Bytes that a file takes to describe a body, before compression.
+std::uint64_t description_bytes(const BodyDescriptions& bodies);
+
+/// What a trajectory says of itself. Only `motion_hash`, `motion_version`, `bodies`,
+/// `steps_per_second` and `store_every` decide whether a file can be continued.
 struct TrajectoryHeader {
     std::string scene_name, source, effective, hash, motion_hash;
     std::string program_version;
     std::uint64_t bodies = 0;
     double steps_per_second = 0;
     std::uint64_t store_every = 0;  ///< 0: the steps that frames need
+    int motion_version = 1;         ///< by which bodies were moved; 1 in files that do not say it
+    BodyDescriptions described;     ///< of all bodies, for the writer; a reader leaves it empty
 };
 
 /// What a stored step is besides the bodies' states.

@@ -8,6 +8,10 @@
 #include <numeric>
 #include <type_traits>
 
+#include "core/error.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/trajectory/body_datasets.hpp"
+
 namespace tesserae::scenes {
 namespace {
 
@@ -19,8 +23,8 @@ static_assert(sizeof(Vec4) == 32 && sizeof(Rotor) == 64 && sizeof(Bivector) == 4
                   std::is_standard_layout_v<Rotor>,
               "states are written as they lie in memory");
 
-constexpr const char* kBodies = "/particles/bodies";
 constexpr const char* kScene = "/parameters/scene";
+constexpr const char* kMotionVersionName = "motion_version";
 
 /// Bytes of a chunk of states, usual 1 MiB (HDF5's chunk cache holds one). A chunk never spans
 /// rows: compressed chunks that grow are moved, and their old place, which the last flush still
@@ -74,7 +78,9 @@ void create_box(hid_t bodies) {
     hdf5::add_attribute(box.get(), "boundary", text.get(), text.get(), {4}, "nonenonenonenone");
 }
 
-void create_bodies(const Handle& file, std::uint64_t bodies) {
+void create_bodies(const Handle& file, const TrajectoryHeader& header) {
+    const std::uint64_t bodies = header.bodies;
+    TSR_ASSERT(header.described.type.size() == bodies);
     hdf5::create_group(file.get(), "/particles");
     const Handle group = hdf5::create_group(file.get(), kBodies);
     create_box(group.get());
@@ -86,6 +92,7 @@ void create_bodies(const Handle& file, std::uint64_t bodies) {
             hdf5::create_growing(parent.get(), "value", H5T_IEEE_F64LE, {0, bodies, element.width},
                                  {1, chunk, element.width}, true);
         if (*element.unit) hdf5::add_text_attribute(value.get(), "unit", element.unit);
+        hdf5::add_text_attribute(value.get(), "components", element.components);
     }
     const Handle position = hdf5::open_group(group.get(), "position");
     create_column(position.get(), "step", H5T_STD_I64LE, "");
@@ -97,14 +104,16 @@ void create_bodies(const Handle& file, std::uint64_t bodies) {
         hdf5::create_growing(group.get(), "id", H5T_STD_I64LE, {bodies},
                              {std::clamp<std::uint64_t>(bodies, 1, kChunkBytes / 8)}, true);
     if (bodies > 0) hdf5::write_rows(id, 0, bodies, H5T_NATIVE_UINT32, ids.data());
+    create_body_datasets(group, header.described);
 }
 
 void create_observables(const Handle& file) {
     const Handle group = hdf5::create_group(file.get(), "/observables");
     for (const Observable& o : kObservables) {
         const Handle parent = hdf5::create_group(group.get(), o.name);
-        create_column(parent.get(), "value", o.is_count ? H5T_STD_I64LE : H5T_IEEE_F64LE, o.unit,
-                      o.width);
+        const Handle value = create_column(
+            parent.get(), "value", o.is_count ? H5T_STD_I64LE : H5T_IEEE_F64LE, o.unit, o.width);
+        if (*o.components) hdf5::add_text_attribute(value.get(), "components", o.components);
     }
 }
 
@@ -127,6 +136,8 @@ void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
                         &header.steps_per_second);
     hdf5::add_attribute(scene.get(), "store_every", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
                         &header.store_every);
+    hdf5::add_attribute(scene.get(), kMotionVersionName, H5T_STD_I32LE, H5T_NATIVE_INT, {},
+                        &header.motion_version);
     const std::pair<const char*, const std::string*> texts[] = {
         {"name", &header.scene_name},
         {"text", &header.source},
@@ -227,7 +238,7 @@ std::array<const void*, kObservables.size()> observable_values(const StepFacts& 
 
 void create_layout(const Handle& file, const TrajectoryHeader& header) {
     create_h5md(file, header.program_version);
-    create_bodies(file, header.bodies);
+    create_bodies(file, header);
     create_observables(file);
     share_steps(file);
     hdf5::create_group(file.get(), "/parameters");
@@ -277,6 +288,11 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
     hdf5::read_attribute(scene.get(), "steps_per_second", H5T_NATIVE_DOUBLE,
                          &header.steps_per_second);
     hdf5::read_attribute(scene.get(), "store_every", H5T_NATIVE_UINT64, &header.store_every);
+    if (hdf5::has_attribute(scene.get(), kMotionVersionName))
+        hdf5::read_attribute(scene.get(), kMotionVersionName, H5T_NATIVE_INT,
+                             &header.motion_version);
+    if (header.motion_version < 1)
+        throw hdf5::Failure(std::string(kMotionVersionName) + ": is not a version from 1 on");
     const Handle creator = hdf5::open_group(file.get(), "/h5md/creator");
     header.program_version = hdf5::read_text_attribute(creator.get(), "version");
     return header;

@@ -8,17 +8,25 @@
 // Where a trajectory's parts lie in its file, for the writer and the reader.
 namespace tesserae::scenes {
 
+/// The group of what bodies are and do.
+inline constexpr const char* kBodies = "/particles/bodies";
+
+/// The components of a vector and of a plane, as they lie in memory and in a file.
+inline constexpr const char* kVectorComponents = "x y z w";
+inline constexpr const char* kPlaneComponents = "xy xz xw yz yw zw";
+
 /// A property of bodies: an H5MD element of `width` doubles a body.
 struct StateElement {
     const char* name;
     const char* unit;
     std::size_t width;
+    const char* components;
 };
 inline constexpr std::array<StateElement, 4> kStateElements = {{
-    {"position", "m", 4},
-    {"rotor", "", 8},
-    {"velocity", "m s-1", 4},
-    {"angular_velocity", "rad s-1", 6},
+    {"position", "m", 4, kVectorComponents},
+    {"rotor", "", 8, "s xy xz xw yz yw zw xyzw"},
+    {"velocity", "m s-1", 4, kVectorComponents},
+    {"angular_velocity", "rad s-1", 6, kPlaneComponents},
 }};
 
 /// What sums up a stored step: an H5MD observable of `width` numbers of 8 bytes.
@@ -26,13 +34,14 @@ struct Observable {
     const char* name;
     const char* unit;
     std::size_t width;
-    bool is_count;  ///< an integer; else reals
+    bool is_count;                ///< an integer; else reals
+    const char* components = "";  ///< none: a single number
 };
 inline constexpr std::array<Observable, 9> kObservables = {{
     {"kinetic_energy", "kg m2 s-2", 1, false},
     {"potential_energy", "kg m2 s-2", 1, false},
-    {"momentum", "kg m s-1", 4, false},
-    {"angular_momentum", "kg m2 s-1", 6, false},
+    {"momentum", "kg m s-1", 4, false, kVectorComponents},
+    {"angular_momentum", "kg m2 s-1", 6, false, kPlaneComponents},
     {"contacts", "", 1, true},
     {"penetration", "m", 1, false},
     {"mean_penetration", "m", 1, false},

@@ -5,6 +5,8 @@
 #include "core/error.hpp"
 #include "render/file/partial_file.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/versions.hpp"
+#include "scenes/trajectory/body_datasets.hpp"
 #include "scenes/trajectory/resume_record.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
@@ -106,9 +108,13 @@ struct TrajectoryWriter::File {
 /// Why a leftover that is whole goes with other settings; none if it can be continued.
 std::optional<std::string> TrajectoryWriter::File::other_motion(
     const TrajectoryHeader& there) const {
-    if (there.motion_hash != header.motion_hash)
-        return fmt::format("is of another motion: {}",
-                           first_motion_difference(there.effective, header.effective));
+    const bool other_version = there.motion_version != header.motion_version;
+    if (other_version || there.motion_hash != header.motion_hash) {
+        const std::string difference = first_motion_difference(there.effective, header.effective);
+        if (other_version && difference.empty())
+            return other_motion_version(there.motion_version, header.motion_version);
+        return "is of another motion: " + difference;
+    }
     if (there.bodies != header.bodies)
         return fmt::format("has {} bodies, here {}", there.bodies, header.bodies);
     if (there.steps_per_second != header.steps_per_second)
@@ -250,6 +256,12 @@ bool TrajectoryWriter::File::take_leftover(bool overwrite) {
     data.resize(rows);
     hdf5::resize(checkpoint, 0);
     reopen();
+    // Names before texts: a kill between the two leaves texts that differ still, and this is done
+    // again.
+    if (!same_body_names(there.effective, header.effective)) {
+        replace_names(file, header.described);
+        reopen();
+    }
     if (other_texts) {
         replace_scene(file, header);
         reopen();

@@ -157,7 +157,7 @@ TEST(Frame, HeaderSaysWhatWasRendered) {
     scene.settings.crop = Crop{10, 20, 60, 70};
     scene.settings.frames_per_second = 24;
     const Folder folder;
-    FrameInfo info = {"first", "0123abcd", "9.8.7", 42, 1.75, R"({"1": "ground"})"};
+    FrameInfo info = {"first", "0123abcd", "9.8.7", 42, 1.75, R"({"1": "ground"})", 3, 5};
     const std::atomic<bool> stop = false;
     render_frame(scene.picture(), info, folder / "a.exr", {}, stop);
 
@@ -176,6 +176,8 @@ TEST(Frame, HeaderSaysWhatWasRendered) {
     EXPECT_EQ(value<Text>(h, "tesserae/idNames"), R"({"1": "ground"})");
     EXPECT_EQ(value<Imf::IntAttribute>(h, "tesserae/frame"), 42);
     EXPECT_EQ(value<Imf::IntAttribute>(h, "tesserae/samples"), 4);
+    EXPECT_EQ(value<Imf::IntAttribute>(h, "tesserae/motionVersion"), 3);
+    EXPECT_EQ(value<Imf::IntAttribute>(h, "tesserae/pictureVersion"), 5);
     EXPECT_EQ(value<Imf::DoubleAttribute>(h, "tesserae/time"), 1.75);
     EXPECT_EQ(value<Imf::DoubleAttribute>(h, "tesserae/fieldOfView"), 50);
     const Imf::Rational fps = value<Imf::RationalAttribute>(h, "framesPerSecond");

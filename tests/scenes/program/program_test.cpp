@@ -1,11 +1,15 @@
 // The program as a user meets it: exit statuses, messages, files.
 #include "tests/scenes/program/program.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
 #include <nlohmann/json.hpp>
+
+#include "core/dynamics/motion_version.hpp"
+#include "render/picture_version.hpp"
 
 namespace tesserae::scenes::testing {
 namespace {
@@ -178,7 +182,9 @@ TEST(Program, WrongCommandLinesExitWithTwoAndSayWhy) {
 TEST(Program, HelpAndVersionGoToStandardOutput) {
     EXPECT_EQ(tesserae({"--help"}).status, 0);
     EXPECT_NE(tesserae({"run", "--help"}).out.find("--threads"), std::string::npos);
-    EXPECT_NE(tesserae({"--version"}).out.find("tesserae"), std::string::npos);
+    EXPECT_EQ(tesserae({"--version"}).out,
+              fmt::format("tesserae 0.1.0 (motion version {}, picture version {})\n",
+                          kMotionVersion, render::kPictureVersion));
 }
 
 TEST(Program, OutputsThatCannotBeWrittenExitWithOneAndNameThePath) {
@@ -252,63 +258,6 @@ TEST(Program, PlanSaysWhatIsLeftOutAndWhy) {
     EXPECT_EQ(json["frames"], 1);
     EXPECT_EQ(json["decisions"][0]["part"], "physics");
     EXPECT_EQ(json["decisions"][0]["needed"], false);
-}
-
-TEST(Program, InfoTellsScenesTrajectoriesAndImagesApart) {
-    const Folder folder("info");
-    const auto scene = folder.write("drop.toml", small_scene(0.1));
-    ASSERT_EQ(tesserae({"run", scene, "-o", folder.file("out")}).status, 0);
-    const auto kind = [&](const std::string& file) {
-        const Outcome info = tesserae({"info", file, "--json"});
-        EXPECT_EQ(info.status, 0) << info.err;
-        return nlohmann::json::parse(info.out)["kind"].get<std::string>();
-    };
-    EXPECT_EQ(kind(scene), "scene");
-    EXPECT_EQ(kind(folder.file("out/trajectory.h5")), "trajectory");
-    EXPECT_EQ(kind(folder.file("out/frames/drop.0000.exr")), "image");
-    // Cut files are errors, not crashes.
-    for (const char* file : {"out/trajectory.h5", "out/frames/drop.0000.exr"}) {
-        const auto cut = folder.write("cut", content(folder / file).substr(0, 200));
-        EXPECT_EQ(tesserae({"info", cut}).status, 2);
-    }
-}
-
-TEST(Program, InfoSaysHowWellATrajectoryKeepsWhatMotionKeeps) {
-    const Folder folder("diagnostics");
-    const auto scene = folder.write("fall.toml", R"([physics]
-duration = 1
-[[body]]
-shape = "hypersphere"
-radius = 0.5
-mass = 2
-position = [3, 0, 0, 0]
-angular_velocity = { zw = 6 }
-)");
-    const auto file = folder.file("fall.h5");
-    ASSERT_EQ(tesserae({"simulate", scene, "-o", file, "--store-every", "1"}).status, 0);
-    const Outcome info = tesserae({"info", file, "--json"});
-    ASSERT_EQ(info.status, 0) << info.err;
-    const auto json = nlohmann::json::parse(info.out);
-    const auto number = [&](const char* name) {
-        return std::stod(json.at(name).get<std::string>());
-    };
-    // I = m r^2 / 3, so I omega^2 / 2 = 3 J; after 1 s a fall at 10 m/s^2 has m v = 20 kg m/s, and
-    // x m v = 60 kg m^2/s about the origin.
-    EXPECT_NEAR(number("energy, first row"), 3, 1e-8);
-    EXPECT_EQ(json.at("momentum change"), "20 kg m/s at step 240");
-    EXPECT_EQ(json.at("angular momentum change"), "60 kg m^2/s at step 240");
-    // The step is exact under constant gravity: 240 roundings of 100 J.
-    EXPECT_LT(number("largest energy change"), 240 * 100 * 2.3e-16);
-    EXPECT_EQ(json.at("deepest penetration"), "0 m at step 0");
-}
-
-TEST(Program, AnImageWithoutBodiesHasNoNames) {
-    const Folder folder("nobody");
-    const auto scene = folder.write("empty.toml", "[render]\nsize = [8, 8]\n");
-    ASSERT_EQ(tesserae({"render", scene, "-o", folder.file("out")}).status, 0);
-    const Outcome info = tesserae({"info", folder.file("out/frames/empty.0000.exr"), "--json"});
-    ASSERT_EQ(info.status, 0) << info.err;
-    EXPECT_EQ(nlohmann::json::parse(info.out).at("tesserae/idNames"), "{}");
 }
 
 }  // namespace

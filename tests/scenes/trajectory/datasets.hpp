@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "scenes/trajectory/hdf5.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
@@ -36,6 +38,26 @@ inline std::map<std::string, std::string> datasets_of(const std::filesystem::pat
     H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, visit, &found);
     H5Fclose(file);
     return found;
+}
+
+/// The texts of a dataset of fixed length, one a body. The file may be one that is being written.
+inline std::vector<std::string> texts_of(const std::filesystem::path& path, const char* name) {
+    const hdf5::Handle file = hdf5::open_file(path, false);
+    const hdf5::Handle dataset = hdf5::open_dataset(file.get(), name);
+    const hdf5::Handle type(H5Dget_type(dataset.get()), H5Tclose);
+    if (H5Tget_class(type.get()) != H5T_STRING || H5Tget_strpad(type.get()) != H5T_STR_NULLPAD ||
+        H5Tget_cset(type.get()) != H5T_CSET_UTF8)
+        return {};
+    const std::size_t bytes = H5Tget_size(type.get());
+    const std::uint64_t bodies = hdf5::extent_of(dataset)[0];
+    std::string all(bodies * bytes, '?');
+    if (bodies > 0) hdf5::read_rows(dataset, 0, bodies, type.get(), all.data());
+    std::vector<std::string> texts;
+    for (std::size_t at = 0; at < all.size(); at += bytes) {
+        const std::string text = all.substr(at, bytes);
+        texts.push_back(text.substr(0, text.find('\0')));
+    }
+    return texts;
 }
 
 /// The names of the datasets that differ, or that only one of two files has; empty if none.

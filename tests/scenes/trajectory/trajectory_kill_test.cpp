@@ -11,8 +11,10 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <map>
 
 #include "core/error.hpp"
+#include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -75,11 +77,20 @@ TrajectoryHeader killed_header(std::uint64_t rows) {
     TrajectoryHeader header = make_header(kKilledBodies);
     header.source = "run " + std::string(rows, 'x');
     header.hash = std::to_string(rows);
+    // Other names, longer and shorter.
+    static std::map<std::uint64_t, NamedBodies> names;
+    const NamedBodies& named = names[rows] = {"run-" + std::string(rows % 9, 'x'), 0, kBodies};
+    header.effective = "[[body]]\nname = \"" + named.name + "\"\n";
+    header.described.names = {&named, 1};
     return header;
 }
 
 /// Every row that counts is right, and none of those flushed is missing.
 void expect_whole(const fs::path& file, std::uint64_t flushed) {
+    const std::vector<std::string> names = texts_of(file, "/particles/bodies/name");
+    ASSERT_EQ(names.size(), kBodies);
+    EXPECT_EQ(names[1].find(names[1] == "d\xc3\xa9j\xc3\xa0" ? "d" : "run-"), 0u) << names[1];
+    EXPECT_EQ(names[4], names[1]);
     const TrajectoryReader reader(file);
     ASSERT_GE(reader.rows(), flushed);
     EXPECT_EQ(reader.facts().size(), reader.rows());

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "core/error.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
@@ -56,8 +57,26 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
     return made;
 }
 
+constexpr std::size_t kMostDescribed = 50'000;
+
+/// A floor, then balls and boxes by turns, all of one name but for the first.
+inline BodyDescriptions make_descriptions(std::size_t bodies) {
+    static const std::vector<BodyType> types = {
+        {Hyperplane{{0, 1, 0, 0}, -1}}, {Hypersphere{0.5}, 2.5}, {Hyperbox{{1, 2, 3, 0.25}}, 1e-3}};
+    static const std::vector<std::uint32_t> type = [] {
+        std::vector<std::uint32_t> of_body = {0};
+        while (of_body.size() < kMostDescribed) of_body.push_back(1 + of_body.size() % 2);
+        return of_body;
+    }();
+    static const std::vector<NamedBodies> names = {{"floor", 0, 1},
+                                                   {"d\xc3\xa9j\xc3\xa0", 1, kMostDescribed - 1}};
+    TSR_ASSERT(bodies <= kMostDescribed);
+    return {types, std::span(type).first(bodies), names};
+}
+
 inline TrajectoryHeader make_header(std::size_t bodies) {
-    return {"test", "# t\xc3\xa9xt\n", "effective", "0123", "4567", "0.1.0", bodies, 240, 3};
+    return {"test", "# t\xc3\xa9xt\n",        "effective", "0123", "4567", "0.1.0", bodies, 240, 3,
+            1,      make_descriptions(bodies)};
 }
 
 inline std::vector<std::uint64_t> make_steps(std::uint64_t rows) {

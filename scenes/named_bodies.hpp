@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/dynamics/bodies.hpp"
+
+namespace tesserae::scenes {
+
+/// A run of consecutive bodies under one name: a [[body]] or a [[lattice]].
+struct NamedBodies {
+    std::string name;
+    BodyId first = 0;
+    std::uint32_t count = 1;
+};
+
+}  // namespace tesserae::scenes
