@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <set>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 #include "core/error.hpp"
 #include "scenes/compare/difference.hpp"
@@ -103,8 +107,8 @@ TEST_F(ContentTest, OfALargeDatasetIsThatOfItsBytesInAnyChunks) {
         std::memcpy(bytes.data() + at, &bits, 8);
     }
     write_trajectory(a_);
-    const std::vector<std::vector<hsize_t>> chunks = {{},          {1, 301, 16},   {521, 1, 16},
-                                                      {64, 50, 5}, {521, 301, 8}, {3, 301, 16}};
+    const std::vector<std::vector<hsize_t>> chunks = {{},          {1, 301, 8},   {521, 40, 8},
+                                                      {64, 50, 5}, {521, 301, 8}, {3, 301, 8}};
     for (const std::vector<hsize_t>& chunk : chunks) {
         const hid_t file = H5Fopen(a_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
         const hid_t space = H5Screate_simple(3, extent.data(), nullptr);
@@ -343,6 +347,10 @@ TEST_F(ContentTest, OfAFolderIsThatOfItsFrames) {
 }
 
 TEST_F(ContentTest, DamageInATrajectoryIsAnErrorOrOtherContentNeverACrash) {
+#ifdef __SANITIZE_ADDRESS__
+    // HDF5 1.10 itself loses some bytes where it gives up on a damaged file.
+    const __lsan::ScopedDisabler not_ours;
+#endif
     write_trajectory(a_);
     const std::string good = content(a_), hash_of_good = hash(a_);
     std::mt19937_64 random(3);

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfTiledOutputFile.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
