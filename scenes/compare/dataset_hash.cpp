@@ -18,9 +18,10 @@ using hdf5::Handle;
 
 /// Bytes of a slab where chunks are smaller, usual 8 MiB.
 constexpr double kSlabBytes = 8 << 20;
-/// Bytes of a slab that takes whole chunks: beyond it they are decompressed several times.
+/// Bytes of a slab that takes whole chunks: beyond it they are decompressed several times, which
+/// takes hours for what gzip made very small.
 constexpr double kMostSlabBytes = 256 << 20;
-constexpr double kMostRepeats = 64;
+constexpr double kMostRepeats = 8;
 
 /// A type of values as it is hashed: little-endian numbers, or texts as they are stored.
 struct ValueType {
@@ -101,11 +102,16 @@ Cut cut_of(const DatasetStorage& storage, std::size_t element_bytes, const std::
             storage.chunk.empty() ? 1 : std::min(storage.chunk[axis], extent[axis]);
         const auto whole = static_cast<double>(chunk);
         if (row_bytes <= kMostSlabBytes || is_last) {
-            double rows = std::max(1.0, std::floor(kSlabBytes / row_bytes));
-            if (whole * row_bytes <= kMostSlabBytes)
+            const auto rows_in = [&](double bytes) {
+                return std::max(1.0, std::floor(bytes / row_bytes));
+            };
+            double rows = rows_in(kSlabBytes);
+            if (whole * row_bytes <= kMostSlabBytes) {
                 rows = std::max(whole, rows - std::fmod(rows, whole));
-            else
+            } else {
+                rows = rows_in(kMostSlabBytes);
                 repeats *= std::ceil(whole / rows);
+            }
             if (repeats > kMostRepeats) break;
             return {axis, static_cast<hsize_t>(std::min(rows, static_cast<double>(extent[axis])))};
         }

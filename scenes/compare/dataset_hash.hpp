@@ -13,7 +13,7 @@ struct DatasetContent {
 };
 
 /// Reads in slabs of at most 256 MiB (usual 8 MiB), so that every chunk is decompressed once or at
-/// most 64 times.
+/// most 8 times.
 /// @throws hdf5::Failure   begins with `name`: of a type that is not compared, or checked_storage()
 DatasetContent content_of(const hdf5::Handle& dataset, const std::string& name,
                           std::uint64_t file_bytes);
