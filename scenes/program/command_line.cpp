@@ -84,6 +84,24 @@ void add_simulation(CLI::App& app, CommandLine& line) {
                    "which thread simulated what when, as JSON for Perfetto or chrome://tracing");
 }
 
+void add_compare(CLI::App& app, CommandLine& line) {
+    CLI::App& hash = *app.add_subcommand(
+        "hash", "a short hash of what is in files, to compare on different machines");
+    add_common(hash, line);
+    hash.add_option(
+            "files", line.files,
+            ".h5, .exr or .toml files, or folders of frames: names, types and values count, "
+            "not compression or program version")
+        ->required();
+
+    CLI::App& diff = *app.add_subcommand(
+        "diff", "where two trajectories, images, scenes or folders of frames first differ");
+    add_common(diff, line);
+    diff.add_option("files", line.files, "A and B, of one kind; exit status 1 if they differ")
+        ->required()
+        ->expected(2);
+}
+
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.
 void append_overrides(const CLI::App& app, const Typed& typed, std::vector<std::string>& sets) {
     const auto given = [&](const char* name) {
@@ -161,6 +179,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App& info = *app.add_subcommand("info", "a summary of a scene, trajectory or image");
     add_common(info, line);
     info.add_option("file", line.file, "a .toml, .h5 or .exr file")->required();
+
+    add_compare(app, line);
 
     CLI::App& generate =
         *app.add_subcommand("generate", "a many-body scene, as TOML on standard output");

@@ -10,7 +10,8 @@ namespace tesserae::scenes {
 /// What the user typed, checked as far as it can be without the scene.
 struct CommandLine {
     std::string command;  ///< "run", "simulate", ...; empty: only help or version was asked for
-    std::filesystem::path file;  ///< the scene, or info's file
+    std::filesystem::path file;                ///< the scene, or info's file
+    std::vector<std::filesystem::path> files;  ///< hash's, or diff's two
     std::filesystem::path output;
     std::filesystem::path trajectory;
     std::filesystem::path trace;  ///< empty: none

@@ -15,6 +15,7 @@
 #include "scenes/load/load.hpp"
 #include "scenes/plan.hpp"
 #include "scenes/plan_picture.hpp"
+#include "scenes/program/compare_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/progress.hpp"
 #include "scenes/signals.hpp"
@@ -189,21 +190,24 @@ int report_stop() {
 
 }  // namespace
 
-void execute(const CommandLine& line) {
+int execute(const CommandLine& line) {
+    int status = 0;
     if (line.command == "simulate") simulate_command(line);
     if (line.command == "run" || line.command == "render") film_command(line);
     if (line.command == "plan") plan_command(line);
     if (line.command == "info") info_command(line);
+    if (line.command == "hash") hash_command(line);
+    if (line.command == "diff") status = diff_command(line);
     if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw RunError("standard output: cannot be written");
+    return status;
 }
 
 int program(int argc, const char* const* argv) {
     handle_signals();
     try {
-        execute(parse_command_line(argc, argv));
-        return 0;
+        return execute(parse_command_line(argc, argv));
     } catch (const Stopped&) {
         return report_stop();
     } catch (const InputError& error) {

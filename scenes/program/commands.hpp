@@ -5,11 +5,13 @@
 namespace tesserae::scenes {
 
 /// Runs one command. Results go to standard output, everything else to standard error.
+/// @return 0, or 1 where diff's files differ
 /// @throws InputError, RunError, Stopped
-void execute(const CommandLine& line);
+int execute(const CommandLine& line);
 
 /// The program: parses, executes, prints errors. Returns the exit status: 0 done, 1 failed while
-/// running, 2 command line or input file wrong, 130 after SIGINT, 143 after SIGTERM.
+/// running (diff: its files differ), 2 command line or input file wrong, 130 after SIGINT, 143
+/// after SIGTERM.
 int program(int argc, const char* const* argv);
 
 }  // namespace tesserae::scenes

@@ -3,12 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 
 #include "core/error.hpp"
 #include "render/file/image_info.hpp"
+#include "scenes/file_kind.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan.hpp"
 #include "scenes/trajectory/trajectory.hpp"
@@ -159,15 +158,15 @@ Facts image_facts(const std::filesystem::path& file) {
 }  // namespace
 
 Facts facts_about(const std::filesystem::path& file, int threads) {
-    std::array<unsigned char, 8> start = {};
-    if (std::filesystem::is_regular_file(file)) {
-        std::ifstream in(file, std::ios::binary);
-        in.read(reinterpret_cast<char*>(start.data()), start.size());
+    switch (kind_of(file)) {
+        case FileKind::kTrajectory:
+            return trajectory_facts(file);
+        case FileKind::kImage:
+            return image_facts(file);
+        case FileKind::kScene:
+        case FileKind::kFrames:
+            break;
     }
-    if (start == std::array<unsigned char, 8>{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'})
-        return trajectory_facts(file);
-    if (start[0] == 0x76 && start[1] == 0x2f && start[2] == 0x31 && start[3] == 0x01)
-        return image_facts(file);
     return scene_facts(file, threads);  // its errors also name what cannot be read at all
 }
 

@@ -1,5 +1,7 @@
 #include "scenes/trajectory/hdf5.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scenes/trajectory/trajectory_driver.hpp"
@@ -9,6 +11,8 @@ namespace {
 
 /// gzip's level, usual 1: on 10^4 bodies in free flight level 4 saves 1 % and takes longer.
 constexpr unsigned kDeflateLevel = 1;
+/// Bytes of a name in a file that is listed: bounds what a damaged one makes of memory.
+constexpr std::size_t kLongestName = 255;
 
 /// Throws the innermost entry of HDF5's error stack; of a failed system call the system's words.
 [[noreturn]] void throw_reason() {
@@ -99,6 +103,7 @@ Result checked(Result result) {
 }
 template herr_t checked(herr_t);
 template hid_t checked(hid_t);
+template H5T_class_t checked(H5T_class_t);
 
 Handle::Handle(hid_t id, Close how) : id_(checked(id)), close_(how) {}
 
@@ -145,6 +150,28 @@ Handle open_group(hid_t parent, const std::string& name) {
 Handle open_dataset(hid_t parent, const std::string& name) {
     require_hard_links(parent, name);
     return {H5Dopen2(parent, name.c_str(), H5P_DEFAULT), H5Dclose};
+}
+
+Handle open_object(hid_t parent, const std::string& name) {
+    require_hard_links(parent, name);
+    return {H5Oopen(parent, name.c_str(), H5P_DEFAULT), H5Oclose};
+}
+
+std::vector<std::string> link_names(const Handle& group, std::uint64_t most) {
+    H5G_info_t info;
+    checked(H5Gget_info(group.get(), &info));
+    if (info.nlinks > most) throw Failure(fmt::format("a group holds more than {} objects", most));
+    std::vector<std::string> names;
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+        char name[kLongestName + 1] = {};
+        const auto bytes = checked<hid_t>(H5Lget_name_by_idx(
+            group.get(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT));
+        if (bytes > hid_t{kLongestName})
+            throw Failure(fmt::format("a name is longer than {} bytes", kLongestName));
+        names.emplace_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 bool has_link(hid_t parent, const std::string& name) {

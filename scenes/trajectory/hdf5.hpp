@@ -72,6 +72,11 @@ void replace_link(hid_t parent, const std::string& name, const Handle& object);
 /// Follow hard links only. @throws Failure
 Handle open_group(hid_t parent, const std::string& name);
 Handle open_dataset(hid_t parent, const std::string& name);
+/// A group, dataset or committed type.
+Handle open_object(hid_t parent, const std::string& name);
+/// Names of a group's links, ascending. @throws Failure   more than `most`, or one of more than 255
+/// bytes
+std::vector<std::string> link_names(const Handle& group, std::uint64_t most);
 bool has_link(hid_t parent, const std::string& name);
 void remove_link(hid_t parent, const std::string& name);
 void hard_link(hid_t parent, const std::string& from, const std::string& to);

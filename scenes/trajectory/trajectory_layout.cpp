@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/trajectory/body_datasets.hpp"
+#include "scenes/trajectory/dataset_storage.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -34,8 +35,6 @@ constexpr std::uint64_t kChunkBytes = 1 << 20;
 constexpr std::uint64_t kColumnChunk = 1024;
 /// Bytes of a chunk of a finished file's record, usual 8 KiB.
 constexpr hsize_t kRecordChunk = 8 * 1024;
-/// The most that gzip can shrink anything.
-constexpr std::uint64_t kMostCompression = 1032;
 
 std::string element_path(const char* name) { return std::string(kBodies) + "/" + name; }
 std::string observable_path(const char* name) { return std::string("/observables/") + name; }
@@ -149,7 +148,7 @@ void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
 
 /// Opens a dataset of 8-byte numbers whose axes after the first are as given.
 Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const Extent& row,
-                    std::uint64_t file_bytes) {
+                    std::uint64_t file_bytes, Opened opened) {
     const auto require = [&](bool good, const char* what) {
         if (!good) throw hdf5::Failure(name + ": " + what);
     };
@@ -157,33 +156,11 @@ Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const
     const Handle type(H5Dget_type(dataset.get()), H5Tclose);
     require(H5Tget_class(type.get()) == kind && H5Tget_size(type.get()) == 8,
             kind == H5T_FLOAT ? "is not of 64-bit reals" : "is not of 64-bit integers");
-    // Nothing that reads other files or runs other code, and nothing that asks for memory beyond
-    // what the file can hold.
-    const Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
-    require(H5Pget_layout(creation.get()) == H5D_CHUNKED, "is not stored in chunks");
-    require(H5Pget_external_count(creation.get()) == 0, "is stored in another file");
-    const int filters = checked(H5Pget_nfilters(creation.get()));
-    for (unsigned i = 0; i < static_cast<unsigned>(filters); ++i) {
-        std::size_t none = 0;
-        const H5Z_filter_t filter =
-            H5Pget_filter2(creation.get(), i, nullptr, &none, nullptr, 0, nullptr, nullptr);
-        require(filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_DEFLATE ||
-                    filter == H5Z_FILTER_FLETCHER32,
-                "uses an unknown filter");
-    }
     const Extent extent = hdf5::extent_of(dataset);
     require(extent.size() == row.size() + 1 && std::equal(row.begin(), row.end(), ++extent.begin()),
             "has another shape");
-    Extent chunk(extent.size());
-    checked(H5Pget_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
-    double chunk_bytes = 8, bytes = 8;
-    for (hsize_t side : chunk) chunk_bytes *= static_cast<double>(side);
-    for (hsize_t side : extent) bytes *= static_cast<double>(side);
-    require(chunk_bytes <= 256.0 * (1 << 20), "has chunks of more than 256 MiB");
-    const double stored = static_cast<double>(
-        std::min<std::uint64_t>(H5Dget_storage_size(dataset.get()), file_bytes));
-    require(bytes <= static_cast<double>(kMostCompression) * stored,
-            "claims to hold more than the file can");
+    const DatasetStorage storage = checked_storage(dataset, name, file_bytes);
+    require(opened == Opened::kToRead || !storage.chunk.empty(), "is not stored in chunks");
     return dataset;
 }
 
@@ -256,22 +233,23 @@ void replace_scene(const Handle& file, const TrajectoryHeader& header) {
     checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
 }
 
-TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies,
-                                 std::uint64_t file_bytes) {
+TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies, std::uint64_t file_bytes,
+                                 Opened opened) {
     const auto column = [&](const std::string& name, H5T_class_t kind) {
-        return open_numbers(file.get(), name, kind, {}, file_bytes);
+        return open_numbers(file.get(), name, kind, {}, file_bytes, opened);
     };
     TrajectoryDatasets data;
     data.step = column(element_path("position") + "/step", H5T_INTEGER);
     data.time = column(element_path("position") + "/time", H5T_FLOAT);
     for (std::size_t i = 0; i < kStateElements.size(); ++i)
-        data.state[i] = open_numbers(file.get(), element_path(kStateElements[i].name) + "/value",
-                                     H5T_FLOAT, {bodies, kStateElements[i].width}, file_bytes);
+        data.state[i] =
+            open_numbers(file.get(), element_path(kStateElements[i].name) + "/value", H5T_FLOAT,
+                         {bodies, kStateElements[i].width}, file_bytes, opened);
     for (std::size_t i = 0; i < kObservables.size(); ++i) {
         const Observable& o = kObservables[i];
-        data.observable[i] = open_numbers(file.get(), observable_path(o.name) + "/value",
-                                          o.is_count ? H5T_INTEGER : H5T_FLOAT,
-                                          o.width > 1 ? Extent{o.width} : Extent{}, file_bytes);
+        data.observable[i] = open_numbers(
+            file.get(), observable_path(o.name) + "/value", o.is_count ? H5T_INTEGER : H5T_FLOAT,
+            o.width > 1 ? Extent{o.width} : Extent{}, file_bytes, opened);
     }
     return data;
 }

@@ -81,9 +81,11 @@ void create_layout(const hdf5::Handle& file, const TrajectoryHeader& header);
 /// The scene's texts may change while its motion stays the same. Flushes.
 void replace_scene(const hdf5::Handle& file, const TrajectoryHeader& header);
 
+/// What datasets are opened for: only those in chunks can grow.
+enum class Opened { kToRead, kToGrow };
 /// @throws hdf5::Failure   a shape, type, size or filter is not that of a trajectory
 TrajectoryDatasets open_datasets(const hdf5::Handle& file, std::uint64_t bodies,
-                                 std::uint64_t file_bytes);
+                                 std::uint64_t file_bytes, Opened opened);
 TrajectoryHeader read_header(const hdf5::Handle& file, std::uint64_t file_bytes);
 
 /// Length of a file that begins like a whole one of HDF5's default format: signature, version 0,

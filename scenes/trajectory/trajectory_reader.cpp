@@ -40,7 +40,7 @@ void TrajectoryReader::File::open() {
     const std::uint64_t bytes = checked_file_bytes(path);
     file = hdf5::open_file(path, false);
     header = read_header(file, bytes);
-    data = open_datasets(file, header.bodies, bytes);
+    data = open_datasets(file, header.bodies, bytes, Opened::kToRead);
     const std::uint64_t rows = data.whole_rows();
     steps.resize(rows);
     times.resize(rows);

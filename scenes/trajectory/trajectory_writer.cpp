@@ -215,7 +215,7 @@ TrajectoryHeader TrajectoryWriter::File::open_leftover() {
     file = hdf5::open_file(lock.partial(), true);
     TrajectoryHeader there = read_header(file, file_bytes);
     if (other_motion(there)) return there;
-    data = open_datasets(file, header.bodies, file_bytes);
+    data = open_datasets(file, header.bodies, file_bytes, Opened::kToGrow);
     if (!find_record(file_bytes)) throw hdf5::Failure("holds no row that can be continued from");
     rows = record.rows;
     return there;
@@ -300,7 +300,7 @@ void TrajectoryWriter::File::start() {
     create_slots();
     checkpoint = hdf5::open_dataset(file.get(), kCheckpoint);
     hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
-    data = open_datasets(file, header.bodies, fs::file_size(lock.partial()));
+    data = open_datasets(file, header.bodies, fs::file_size(lock.partial()), Opened::kToGrow);
     rows = 0;
     record = {};
     next_slot = 0;

@@ -119,7 +119,7 @@ TEST_F(TrajectoryRefuse, NamesWhatIsWrongAtOnce) {
         {kRotor, [](hid_t f) { make_text(f, kRotor, 8); }, "64-bit reals"},
         {kStep, [](hid_t f) { make_dataset(f, kStep, H5T_IEEE_F64LE, {5}, 1); }, "64-bit integers"},
         {kEnergy, [](hid_t f) { make_dataset(f, kEnergy, H5T_IEEE_F64LE, {5}, 0); },
-         "not stored in chunks"},
+         "claims to hold more"},
         {kEnergy, [=](hid_t f) { make_dataset(f, kEnergy, H5T_IEEE_F64LE, {1u << 30}, 1u << 26); },
          "chunks of more than"},
         {kRotor,

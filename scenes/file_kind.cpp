@@ -1,0 +1,29 @@
+#include "scenes/file_kind.hpp"
+
+#include <array>
+#include <fstream>
+#include <system_error>
+
+namespace tesserae::scenes {
+
+const char* name_of(FileKind kind) {
+    constexpr const char* kNames[] = {"trajectory", "image", "scene", "frames"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+FileKind kind_of(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) return FileKind::kFrames;
+    std::array<unsigned char, 8> start = {};
+    if (std::filesystem::is_regular_file(path, ignored)) {
+        std::ifstream in(path, std::ios::binary);
+        in.read(reinterpret_cast<char*>(start.data()), start.size());
+    }
+    if (start == std::array<unsigned char, 8>{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'})
+        return FileKind::kTrajectory;
+    if (start[0] == 0x76 && start[1] == 0x2f && start[2] == 0x31 && start[3] == 0x01)
+        return FileKind::kImage;
+    return FileKind::kScene;
+}
+
+}  // namespace tesserae::scenes
