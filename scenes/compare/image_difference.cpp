@@ -67,9 +67,9 @@ std::string text_of(PixelType type, double value) {
                                     : fmt::format("{}", static_cast<float>(value));
 }
 
-class Comparison {
+class PixelComparison {
   public:
-    Comparison(const ImagePixels& a, const ImagePixels& b, ImageDifference& difference)
+    PixelComparison(const ImagePixels& a, const ImagePixels& b, ImageDifference& difference)
         : a_(a),
           b_(b),
           both_(intersection(a.window(), b.window())),
@@ -145,7 +145,7 @@ ImageDifference compare_images(const std::filesystem::path& a, const std::filesy
     const ImagePixels image_a(a), image_b(b);
     ImageDifference difference;
     difference.window_a = image_a.window(), difference.window_b = image_b.window();
-    Comparison(image_a, image_b, difference).compare();
+    PixelComparison(image_a, image_b, difference).compare();
     return difference;
 }
 

@@ -69,9 +69,9 @@ Bodies bodies_for(std::uint64_t count) {
 }
 
 /// Both trajectories, read at the same steps.
-class Comparison {
+class RowComparison {
   public:
-    Comparison(const std::filesystem::path& a, const std::filesystem::path& b)
+    RowComparison(const std::filesystem::path& a, const std::filesystem::path& b)
         : a_(a), b_(b), state_a_(bodies_for(a_.header().bodies)), state_b_(state_a_) {}
 
     void compare(TrajectoryDifference& difference);
@@ -104,14 +104,14 @@ void set_values(FirstDifference& first, double a, double b) {
     first.difference = std::abs(a - b);
 }
 
-bool Comparison::is_same(std::size_t body, std::size_t element) const {
+bool RowComparison::is_same(std::size_t body, std::size_t element) const {
     const std::size_t width = kStateElements[element].width;
     return std::memcmp(state_arrays(state_a_)[element] + body * width,
                        state_arrays(state_b_)[element] + body * width, width * sizeof(double)) == 0;
 }
 
 /// The first body that differs, and its first component.
-std::optional<FirstDifference> Comparison::first_state(const RowPair& row) const {
+std::optional<FirstDifference> RowComparison::first_state(const RowPair& row) const {
     for (std::size_t body = 0; body < state_a_.size(); ++body)
         for (std::size_t e = 0; e < kStateElements.size(); ++e) {
             if (is_same(body, e)) continue;
@@ -130,7 +130,7 @@ std::optional<FirstDifference> Comparison::first_state(const RowPair& row) const
     return std::nullopt;
 }
 
-std::optional<FirstDifference> Comparison::first_observable(const RowPair& row) const {
+std::optional<FirstDifference> RowComparison::first_observable(const RowPair& row) const {
     const StepFacts &facts_a = facts_a_[row.a], &facts_b = facts_b_[row.b];
     FirstDifference first = found(row);
     if (!same_bits(facts_a.time, facts_b.time)) {
@@ -157,13 +157,13 @@ std::optional<FirstDifference> Comparison::first_observable(const RowPair& row) 
     return std::nullopt;
 }
 
-std::optional<FirstDifference> Comparison::first_in(const RowPair& row) {
+std::optional<FirstDifference> RowComparison::first_in(const RowPair& row) {
     read(row);
     const auto first = first_state(row);
     return first ? first : first_observable(row);
 }
 
-StepDifference Comparison::sum_up(const RowPair& row) {
+StepDifference RowComparison::sum_up(const RowPair& row) {
     read(row);
     StepDifference sum;
     sum.step = a_.steps()[row.a];
@@ -183,7 +183,7 @@ StepDifference Comparison::sum_up(const RowPair& row) {
     return sum;
 }
 
-void Comparison::compare(TrajectoryDifference& difference) {
+void RowComparison::compare(TrajectoryDifference& difference) {
     const TrajectoryHeader &a = a_.header(), &b = b_.header();
     difference.bodies_a = a.bodies, difference.bodies_b = b.bodies;
     difference.scene = first_difference(a.effective, b.effective);
@@ -210,7 +210,7 @@ TrajectoryDifference compare_trajectories(const std::filesystem::path& a,
                                           const std::filesystem::path& b) {
     TrajectoryDifference difference;
     try {
-        Comparison(a, b).compare(difference);
+        RowComparison(a, b).compare(difference);
     } catch (const InputError& error) {
         difference.not_compared = error.what();
     }

@@ -10,11 +10,11 @@
 #include <fstream>
 #include <functional>
 #include <random>
-#include <sstream>
 #include <string>
 
 #include "core/error.hpp"
 #include "tests/error_of.hpp"
+#include "tests/render/test_scene.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tesserae::render {
@@ -27,13 +27,6 @@ class FileWriterTest : public ::testing::Test {
   protected:
     const tesserae::testing::TemporaryFolder folder_{"file_writer"};
 };
-
-std::string content_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 /// Exit status of a child process that runs `work`, negative the signal that ended it.
 int status_of_child(const std::function<int()>& work) {
@@ -75,7 +68,7 @@ TEST_F(FileWriterTest, WritesWhatAStringInMemoryHolds) {
         }
         ASSERT_FALSE(fs::exists(path) && round == 0);
         writer.finish();
-        ASSERT_EQ(content_of(path), expected) << "round " << round;
+        ASSERT_EQ(bytes_of(path), expected) << "round " << round;
         ASSERT_FALSE(fs::exists(path.string() + ".partial"));
     }
 }
@@ -86,12 +79,12 @@ TEST_F(FileWriterTest, ReplacesAFileOnlyWhenFinished) {
     {
         FileWriter writer(path);
         writer.write("newer", 5);
-        EXPECT_EQ(content_of(path), "old");
+        EXPECT_EQ(bytes_of(path), "old");
     }
-    EXPECT_EQ(content_of(path), "old");
+    EXPECT_EQ(bytes_of(path), "old");
     EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
     write_file(path, "newer");
-    EXPECT_EQ(content_of(path), "newer");
+    EXPECT_EQ(bytes_of(path), "newer");
 }
 
 TEST_F(FileWriterTest, RefusesASecondWriter) {
@@ -104,7 +97,7 @@ TEST_F(FileWriterTest, RefusesASecondWriter) {
     });
     EXPECT_EQ(status, 7);
     writer.finish();
-    EXPECT_EQ(content_of(path), "first");
+    EXPECT_EQ(bytes_of(path), "first");
 }
 
 TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {
@@ -119,7 +112,7 @@ TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {
     ASSERT_EQ(fs::file_size(folder_ / "file.partial"), 200'000u);
     ASSERT_FALSE(fs::exists(path));
     write_file(path, "whole");
-    EXPECT_EQ(content_of(path), "whole");
+    EXPECT_EQ(bytes_of(path), "whole");
 }
 
 TEST_F(FileWriterTest, AFullDiskLeavesNothing) {
@@ -167,7 +160,7 @@ TEST_F(FileWriterTest, NamesThePathAndTheReason) {
         EXPECT_EQ(error.find(path.string() + ": "), 0u) << error;
         EXPECT_NE(error.find(reason), std::string::npos) << error;
     }
-    EXPECT_EQ(content_of(folder_ / "plain"), "x");
+    EXPECT_EQ(bytes_of(folder_ / "plain"), "x");
 }
 
 TEST_F(FileWriterTest, AFailedRenameLeavesNothing) {
@@ -204,7 +197,7 @@ TEST_F(FileWriterTest, ManyWritersOfOneFileLeaveOneWholeFile) {
         ::wait(&status);
         EXPECT_EQ(WEXITSTATUS(status), 7);
     }
-    const std::string content = content_of(path);
+    const std::string content = bytes_of(path);
     ASSERT_EQ(content.size(), 100'000u);
     EXPECT_EQ(content.find_first_not_of(content[0]), std::string::npos);
     EXPECT_FALSE(fs::exists(folder_ / "file.partial"));

@@ -15,10 +15,10 @@
 #include <fstream>
 #include <limits>
 #include <random>
-#include <sstream>
 
 #include "core/error.hpp"
 #include "tests/error_of.hpp"
+#include "tests/render/test_scene.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tesserae::render {
@@ -34,13 +34,13 @@ class ImagePixelsTest : public ::testing::Test {
 };
 
 /// Bits at random for three channels: infinities, numbers that are none and all else.
-struct Picture {
+struct Pixels {
     Imath::Box2i window{{-3, 5}, {33, 27}};
     std::vector<std::uint32_t> ids;
     std::vector<float> depths;
     std::vector<std::uint16_t> reds;
 
-    explicit Picture(unsigned seed = 1) {
+    explicit Pixels(unsigned seed = 1) {
         std::mt19937 random(seed);
         for (int i = 0; i < 37 * 23; ++i) {
             ids.push_back(static_cast<std::uint32_t>(random()));
@@ -101,7 +101,7 @@ PixelPlanes all_of(const fs::path& path, int lines) {
 }
 
 TEST_F(ImagePixelsTest, AreThoseThatWereWrittenInAnyForm) {
-    const Picture picture;
+    const Pixels picture;
     // Ascending by name.
     const PixelPlanes expected = {bytes_of_all(picture.reds), bytes_of_all(picture.depths),
                                   bytes_of_all(picture.ids)};
@@ -143,7 +143,7 @@ TEST_F(ImagePixelsTest, ValuesAreExact) {
 }
 
 TEST_F(ImagePixelsTest, RefusesWhatIsNotCompared) {
-    const Picture picture;
+    const Pixels picture;
     const auto error = [&] {
         return error_of<InputError>([&] {
             const ImagePixels image(path_);
@@ -187,21 +187,14 @@ TEST_F(ImagePixelsTest, RefusesWhatIsNotCompared) {
     expect("several parts");
 }
 
-std::string content_of(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 void write(const fs::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
 }
 
 TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
-    const Picture picture;
+    const Pixels picture;
     picture.write_tiles(path_, 16, Imf::ZIP_COMPRESSION);
-    const std::string good = content_of(path_);
+    const std::string good = bytes_of(path_);
     // The data window 30000 x 30000, and tiles of one pixel or of 65536.
     const auto at = [&](const char* name) {
         const std::string text = std::string(name) + '\0';
@@ -230,7 +223,7 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
 }
 
 TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
-    const Picture picture;
+    const Pixels picture;
     std::mt19937 random(7);
     int errors = 0;
     for (int round = 0; round < 200; ++round) {
@@ -239,7 +232,7 @@ TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
                            : (round % 3 == 1 ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION);
         round % 2 == 0 ? picture.write_lines(path_, compression)
                        : picture.write_tiles(path_, 16, compression);
-        std::string bytes = content_of(path_);
+        std::string bytes = bytes_of(path_);
         if (round % 5 == 0) {
             bytes.resize(random() % bytes.size());
         } else {

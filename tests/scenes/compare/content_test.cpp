@@ -56,17 +56,29 @@ TEST_F(ContentTest, OfATrajectoryIsRecomputedFromItsDescription) {
     const std::map<std::string, std::string> width = {
         {"position", "[4]"},         {"rotor", "[8]"},    {"velocity", "[4]"},
         {"angular_velocity", "[6]"}, {"momentum", "[4]"}, {"angular_momentum", "[6]"}};
+    const std::set<std::string> described = {"particles/bodies/name", "particles/bodies/shape",
+                                             "particles/bodies/size"};
+    const auto counted = [](const std::string& text) {
+        const std::uint64_t length = text.size();
+        return std::string(reinterpret_cast<const char*>(&length), 8) + text;
+    };
     std::string manifest = "tesserae content 1\ntrajectory\n";
     for (const auto& [name, bytes] : datasets_of(a_)) {
         std::string line = "\"/" + name + "\" ", values = bytes;
         if (name == "parameters/scene/effective") {
             line += "text []";
-            const std::uint64_t length = bytes.size();
-            values = std::string(reinterpret_cast<const char*>(&length), 8) + bytes;
+            values = counted(bytes);
         } else if (bytes.empty() || name.starts_with("parameters")) {
             continue;
         } else if (name == "particles/bodies/id") {
             line += "int64 [3]";
+        } else if (name == "particles/bodies/mass") {
+            line += "float64 [3]";
+        } else if (described.contains(name)) {
+            line += "text [3]";
+            values.clear();
+            for (std::size_t i = 0; i < 3; ++i)
+                values += counted(bytes.substr(i * bytes.size() / 3, bytes.size() / 3).c_str());
         } else {
             const std::string parent = fs::path(name).parent_path().filename();
             const bool is_state = name.starts_with("particles");
@@ -209,6 +221,7 @@ TEST_F(ContentTest, RefusesFilesThatAreNoTrajectoriesAtOnce) {
         EXPECT_NE(error.find(words), std::string::npos) << error << "; expected " << words;
         fs::remove(a_);
     };
+    write_trajectory(b_);  // starts HDF5 as the program does
     const hsize_t huge = 1'000'000'000'000;
     const hid_t scalar = H5Screate(H5S_SCALAR), much = H5Screate_simple(1, &huge, nullptr);
     const hid_t text = H5Tcopy(H5T_C_S1), pair = H5Tcreate(H5T_COMPOUND, 16);

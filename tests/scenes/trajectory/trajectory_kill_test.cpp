@@ -79,7 +79,7 @@ TrajectoryHeader killed_header(std::uint64_t rows) {
     header.hash = std::to_string(rows);
     // Other names, longer and shorter.
     static std::map<std::uint64_t, NamedBodies> names;
-    const NamedBodies& named = names[rows] = {"run-" + std::string(rows % 9, 'x'), 0, kBodies};
+    const NamedBodies& named = names[rows] = {"run-" + std::string(rows % 9, 'x'), 0, kKilledBodies};
     header.effective = "[[body]]\nname = \"" + named.name + "\"\n";
     header.described.names = {&named, 1};
     return header;
@@ -88,7 +88,7 @@ TrajectoryHeader killed_header(std::uint64_t rows) {
 /// Every row that counts is right, and none of those flushed is missing.
 void expect_whole(const fs::path& file, std::uint64_t flushed) {
     const std::vector<std::string> names = texts_of(file, "/particles/bodies/name");
-    ASSERT_EQ(names.size(), kBodies);
+    ASSERT_EQ(names.size(), kKilledBodies);
     EXPECT_EQ(names[1].find(names[1] == "d\xc3\xa9j\xc3\xa0" ? "d" : "run-"), 0u) << names[1];
     EXPECT_EQ(names[4], names[1]);
     const TrajectoryReader reader(file);
