@@ -35,14 +35,15 @@ check() {
 # scheduler's own locks in the run at hand. Ordering by bare fences, which the sanitizer does not
 # know, occurs only in oneTBB's sleeping threads.
 build_tbb_for_tsan() {
-    local folder=$root/build/tsan-tbb version site
+    local folder=$root/build/tsan-tbb version site suite
     [ -e "$folder/build/lib_relwithdebinfo/libtbb.so.12" ] && return
     version=$(dpkg-query -W -f '${source:Version}' libtbb-dev) || return
     rm -rf "$folder" && mkdir -p "$folder/lists/partial" "$folder/cache" || return
     # From the mirror that the binary packages come from.
     local key=/usr/share/keyrings/debian-archive-keyring.gpg
-    site=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Codename: bookworm' | head -n 1)
-    echo "deb-src [signed-by=$key] $site bookworm main" >"$folder/sources"
+    suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
+    site=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' "Codename: $suite" | head -n 1)
+    echo "deb-src [signed-by=$key] $site $suite main" >"$folder/sources"
     local apt=(apt-get -q -o "Dir::Etc::SourceList=$folder/sources" -o Dir::Etc::SourceParts=/dev/null
         -o "Dir::State::Lists=$folder/lists" -o "Dir::Cache=$folder/cache")
     "${apt[@]}" update >&2 && (cd "$folder" && "${apt[@]}" source "onetbb=$version") >&2 || return
@@ -66,11 +67,11 @@ case "${1:-}" in
     ;;
 --all)
     export CI=true  # warnings are errors
-    install_packages "${packages[@]}" clang libclang-rt-14-dev dpkg-dev
+    install_packages "${packages[@]}" clang libclang-rt-dev dpkg-dev
     clang=(-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++)
     check release -DCMAKE_BUILD_TYPE=Release
     build "$root/build/release" headers_alone || failed+=(headers_alone)
-    check debug -DCMAKE_BUILD_TYPE=Debug
+    check debug -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=OFF  # every source compiles alone
     check clang -DCMAKE_BUILD_TYPE=Release "${clang[@]}"
     check clang-debug -DCMAKE_BUILD_TYPE=Debug "${clang[@]}"
     check asan -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTESSERAE_SANITIZE=address,undefined
