@@ -15,12 +15,8 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "core/contact/find_contacts.hpp"
-#include "core/dynamics/islands.hpp"
-#include "core/dynamics/motion.hpp"
-#include "core/dynamics/pairs.hpp"
 #include "core/dynamics/solver.hpp"
-#include "core/dynamics/step.hpp"
-#include "parallel/kept_pairs.hpp"
+#include "core/dynamics/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/sort_and_sweep.hpp"
 #include "parallel/threads.hpp"
@@ -177,24 +173,19 @@ const Heap& heap_of(int count) {
     return heaps[count] = {world.bodies(), world.memory()};
 }
 
-/// A step made as far as its islands.
+/// The next step of a heap as far as its islands.
 struct StepBeforeSolver {
     Simulation simulation;
     StepData step;
 
     explicit StepBeforeSolver(const Heap& heap) {
-        simulation = make_simulation(heap.bodies, PhysicsSettings{});
-        simulation.memory = heap.memory;
-        begin_step(simulation, step, kStep);
-        const Range all{0, heap.bodies.size()};
-        advance_first_half(simulation, step, all);
-        update_bounds(simulation, step, all);
-        parallel::KeptPairs().find_pairs(simulation, step);
-        find_contacts(simulation, step, {0, step.pairs.size()}, step.contacts);
-        begin_contacts(step);
-        recall_impulses(simulation, step, {0, step.contacts.size()});
-        integrate_velocities(simulation, step, all);
-        IslandBuilder().build(simulation, step);
+        StageCopy found(Stage::kSolveIslands);
+        parallel::ParallelWorld world(heap.bodies, PhysicsSettings{});
+        world.memory() = heap.memory;
+        world.observe(&found);
+        parallel::Threads(1).run([&] { world.step(kStep); });
+        simulation = found.simulation;
+        step = found.step;
     }
 
     /// Processor time of all islands on one thread [s]. Does not change what the next call starts
@@ -247,20 +238,18 @@ BENCHMARK(step_of_heap)
 /// A search among spheres of one size all over a 4D cube, one thread.
 void broad_phase(State& state) {
     const auto count = static_cast<int>(state.range(0));
-    Simulation simulation =
-        make_simulation(cloud_of_spheres(count, 0.5, Vec4::Zero()), PhysicsSettings{});
-    StepData step;
-    const Range all{0, simulation.bodies.size()};
-    begin_step(simulation, step, kStep);
-    advance_first_half(simulation, step, all);
-    update_bounds(simulation, step, all);
+    StageCopy found(Stage::kFindContacts);
+    parallel::ParallelWorld world(cloud_of_spheres(count, 0.5, Vec4::Zero()), PhysicsSettings{});
+    world.observe(&found);
+    parallel::Threads(1).run([&] { world.step(kStep); });
+    std::vector<BodyPair> pairs;
     parallel::SortAndSweep sort_and_sweep;
     parallel::Threads threads(1);
     threads.run([&] {
-        for (auto _ : state) sort_and_sweep.find_pairs(simulation, step.bounds, step.pairs);
+        for (auto _ : state) sort_and_sweep.find_pairs(found.simulation, found.step.bounds, pairs);
     });
     report_ns_per(state, "body", count);
-    state.counters["pairs_per_body"] = static_cast<double>(step.pairs.size()) / count;
+    state.counters["pairs_per_body"] = static_cast<double>(pairs.size()) / count;
 }
 BENCHMARK(broad_phase)->RangeMultiplier(10)->Range(1000, 100000)->Unit(benchmark::kMillisecond);
 

@@ -18,10 +18,8 @@
 
 #include "bench/thread_time.hpp"
 #include "core/dynamics/islands.hpp"
-#include "core/dynamics/motion.hpp"
-#include "core/dynamics/pairs.hpp"
 #include "core/dynamics/solver.hpp"
-#include "parallel/kept_pairs.hpp"
+#include "core/dynamics/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film.hpp"
@@ -186,27 +184,18 @@ Work steps_of(scenes::Scene scene, int settle) {
 Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
     parallel::ParallelWorld world(std::move(scene.bodies), *scene.physics);
     for (int i = 0; i < settle; ++i) world.step(kSeconds);
-    auto simulation = std::make_shared<Simulation>(make_simulation(world.bodies(), *scene.physics));
-    simulation->memory = world.memory();
-    auto start = std::make_shared<StepData>();
-    begin_step(*simulation, *start, kSeconds);
-    const Range all{0, simulation->bodies.size()};
-    advance_first_half(*simulation, *start, all);
-    update_bounds(*simulation, *start, all);
-    parallel::KeptPairs().find_pairs(*simulation, *start);
-    find_contacts(*simulation, *start, {0, start->pairs.size()}, start->contacts);
-    begin_contacts(*start);
-    recall_impulses(*simulation, *start, {0, start->contacts.size()});
-    integrate_velocities(*simulation, *start, all);
+    auto found = std::make_shared<StageCopy>(Stage::kBuildIslands);
+    world.observe(found.get());
+    world.step(kSeconds);
     auto builder = std::make_shared<IslandBuilder>(coloured_from);
-    builder->build(*simulation, *start);
     return [=] {
-        StepData step = *start;
+        const Simulation& simulation = found->simulation;
+        StepData step = found->step;
         return time_of([&] {
-            builder->build(*simulation, step);
+            builder->build(simulation, step);
             for (std::size_t i = 0; i < step.islands.size(); ++i) {
-                solve_island(*simulation, step, i);
-                relax_island(*simulation, step, i);
+                solve_island(simulation, step, i);
+                relax_island(simulation, step, i);
             }
         });
     };

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/dynamics/wide_solver.hpp"
-#include "parallel/chunks.hpp"
+#include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
 namespace {

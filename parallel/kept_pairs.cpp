@@ -26,7 +26,7 @@ void KeptPairs::find_pairs(const Simulation& simulation, StepData& step) {
 
 void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
     lists_.collect(
-        candidates_.size(), kCandidateGrain,
+        kInRanges, candidates_.size(), kCandidateGrain,
         [&](Range range, std::vector<BodyPair>& list) {
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const auto [a, b] = candidates_[i];

@@ -2,14 +2,15 @@
 
 #include <memory>
 
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/world.hpp"
 
 namespace tesserae::parallel {
 
+class ThreadedSchedule;
 class Trace;
 
-/// core's World on several threads: the same stages, the same functions of core, the same bits at
-/// any number of threads.
+/// core's World on several threads: the same step, on a ThreadedSchedule, with the same bits at any
+/// number of threads.
 class ParallelWorld {
   public:
     /// @throws InputError   as make_simulation()
@@ -25,32 +26,23 @@ class ParallelWorld {
     /// Drops what is kept to make the next step faster. It changes no result.
     void forget_hints();
 
-    /// From the next step on every stage is a span of the trace, under its name, and so is every
-    /// message of islands. Null ends that. Changes no result.
-    void set_trace(Trace* trace) { trace_ = trace; }
+    /// From the next step on the observer sees every stage; null ends that. Changes no result.
+    void observe(StageObserver* observer) { world_.observe(observer); }
+    /// The same for a trace: every stage is a span under its name, and so is every message of
+    /// islands. Takes the observer's place.
+    void set_trace(Trace* trace);
 
-    const Bodies& bodies() const { return simulation_.bodies; }
-    const StepMemory& memory() const { return simulation_.memory; }
-    StepMemory& memory() { return simulation_.memory; }
+    const Bodies& bodies() const { return world_.bodies(); }
+    const StepMemory& memory() const { return world_.memory(); }
+    StepMemory& memory() { return world_.memory(); }
 
   private:
-    struct Stages;
+    class StageSpans;
 
-    void advance_first_half();
-    void find_pairs();
-    void find_contacts();
-    void integrate_velocities();
-    void build_islands();
-    void solve_islands();
-    void advance_second_half();
-    void relax_islands();
-    StepReport finish_step();
-    void require_finite() const;
-
-    Simulation simulation_;
-    StepData step_;
-    std::unique_ptr<Stages> stages_;  ///< from the first step on
+    World world_;
+    std::unique_ptr<ThreadedSchedule> schedule_;  ///< from the first step on
     Trace* trace_ = nullptr;
+    std::unique_ptr<StageSpans> spans_;  ///< of the trace
 };
 
 }  // namespace tesserae::parallel

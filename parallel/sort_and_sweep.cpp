@@ -61,7 +61,7 @@ void SortAndSweep::find_pairs(const Simulation& simulation, const std::vector<Bo
     sort_items(simulation, bounds);
     list_cells();
     pair_lists_.collect(
-        items_.size(), kGrain,
+        kInRanges, items_.size(), kGrain,
         [&](Range items, std::vector<BodyPair>& list) {
             sweep(items, list);
             add_unbounded(simulation, items, list);

@@ -2,8 +2,9 @@
 
 #include <cstdint>
 
+#include "core/dynamics/chunked_list.hpp"
 #include "core/dynamics/step_data.hpp"
-#include "parallel/chunks.hpp"
+#include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
 

@@ -1,14 +1,9 @@
-#include <utility>
+#include <map>
 
 #include "bench/bodies.hpp"
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/islands.hpp"
-#include "core/dynamics/motion.hpp"
-#include "core/dynamics/pairs.hpp"
-#include "core/dynamics/solver.hpp"
-#include "core/dynamics/step.hpp"
-#include "parallel/kept_pairs.hpp"
+#include "core/dynamics/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 
@@ -49,11 +44,10 @@ class InTesserae : public PeerEngine {
         threads_.run([&] { report_ = world_.step(kPeerStep); });
     }
     PeerContacts contacts() override {
-        Simulation simulation = present();
-        StepData step;
-        parallel::KeptPairs kept_pairs;
-        threads_.run([&] { begin(simulation, step, kept_pairs); });
-        return {static_cast<double>(step.contacts.size()), static_cast<double>(report_.contacts)};
+        StageCopy found(Stage::kBuildIslands);
+        threads_.run([&] { next_step(settings_.iterations, found); });
+        return {static_cast<double>(found.step.contacts.size()),
+                static_cast<double>(report_.contacts)};
     }
     double penetration() const override { return report_.penetration; }
     std::vector<Vec4> positions() const override {
@@ -61,85 +55,53 @@ class InTesserae : public PeerEngine {
         return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count_)};
     }
 
-    /// The next step again with core's own functions, timed.
+    /// Of the next step, with a search for pairs, which a step of the world makes now and then
+    /// only.
     StageTimes stages() {
-        StageTimes times;
+        StageClock clock, without_iterations;
         threads_.run([&] {
-            Simulation simulation = present();
-            StepData step;
-            parallel::KeptPairs kept_pairs;
-            IslandBuilder builder;
-            // The first time grows the arrays.
-            for (int i = 0; i < 2; ++i) times = time_step(simulation, step, kept_pairs, builder);
+            next_step(settings_.iterations, clock);
+            next_step(0, without_iterations);
         });
+        const auto& of = clock.seconds;
+        StageTimes times;
+        times.find_pairs = of.at(Stage::kFindPairs);
+        times.find_contacts = of.at(Stage::kFindContacts);
+        times.build_islands = of.at(Stage::kBuildIslands);
+        times.make_rows = without_iterations.seconds.at(Stage::kSolveIslands);
+        times.iterate = of.at(Stage::kSolveIslands) - times.make_rows;
+        for (const Stage other :
+             {Stage::kAdvanceFirstHalf, Stage::kIntegrateVelocities, Stage::kAdvanceSecondHalf,
+              Stage::kRelaxIslands, Stage::kFinishStep})
+            times.others += of.at(other);
         return times;
     }
 
   private:
-    Simulation present() const {
-        Simulation simulation = make_simulation(world_.bodies(), settings_);
-        simulation.memory = world_.memory();
-        return simulation;
-    }
+    /// Adds up the processor time of each stage [s].
+    struct StageClock : StageObserver {
+        void begin(Stage, std::size_t, const Simulation&, const StepData&) override {
+            begin_ = thread_time();
+        }
+        void end(Stage stage) override { seconds[stage] += thread_time() - begin_; }
 
-    static StageTimes begin(Simulation& simulation, StepData& step,
-                            parallel::KeptPairs& kept_pairs) {
-        StageTimes times;
-        const Range all{0, simulation.bodies.size()};
-        const double start = thread_time();
-        begin_step(simulation, step, kPeerStep);
-        advance_first_half(simulation, step, all);
-        const double moved = thread_time();
-        update_bounds(simulation, step, all);
-        kept_pairs.forget();  // with a search, which a step of the world makes now and then only
-        kept_pairs.find_pairs(simulation, step);
-        const double paired = thread_time();
-        step.contacts.clear();
-        find_contacts(simulation, step, {0, step.pairs.size()}, step.contacts);
-        times.find_contacts = thread_time() - paired;
-        times.find_pairs = paired - moved;
-        times.others = moved - start;
-        return times;
-    }
+        std::map<Stage, double> seconds;
 
-    static StageTimes time_step(Simulation& simulation, StepData& step,
-                                parallel::KeptPairs& kept_pairs, IslandBuilder& builder) {
-        StageTimes times = begin(simulation, step, kept_pairs);
-        const Range all{0, simulation.bodies.size()};
-        const double start = thread_time();
-        begin_contacts(step);
-        recall_impulses(simulation, step, {0, step.contacts.size()});
-        integrate_velocities(simulation, step, all);
-        const double integrated = thread_time();
-        builder.build(simulation, step);
-        const double built = thread_time();
-        times.others += integrated - start;
-        times.build_islands = built - integrated;
+      private:
+        double begin_ = 0;
+    };
 
-        // Without iterations first, and then what the iterations add.
-        const auto velocity = step.velocity;
-        const auto angular_velocity = step.angular_velocity;
-        const auto solve = [&](int iterations) {
-            step.velocity = velocity;
-            step.angular_velocity = angular_velocity;
-            std::swap(simulation.settings.iterations, iterations);
-            const double before = thread_time();
-            for (std::size_t i = 0; i < step.islands.size(); ++i) solve_island(simulation, step, i);
-            std::swap(simulation.settings.iterations, iterations);
-            return thread_time() - before;
-        };
-        step.residual.resize(step.islands.size());
-        times.make_rows = solve(0);
-        times.iterate = solve(simulation.settings.iterations) - times.make_rows;
-
-        const double solved = thread_time();
-        advance_second_half(simulation, step, all);
-        for (std::size_t i = 0; i < step.islands.size(); ++i) relax_island(simulation, step, i);
-        step.pushing.clear();
-        list_pushing(step, {0, step.impulses.size()}, step.pushing);
-        end_substep(simulation, step);
-        times.others += thread_time() - solved;
-        return times;
+    /// The second of two steps that go on from the present state with so many iterations: the first
+    /// grows the arrays.
+    void next_step(int iterations, StageObserver& observer) const {
+        PhysicsSettings settings = settings_;
+        settings.iterations = iterations;
+        parallel::ParallelWorld world(world_.bodies(), settings);
+        world.memory() = world_.memory();
+        world.step(kPeerStep);
+        world.forget_hints();
+        world.observe(&observer);
+        world.step(kPeerStep);
     }
 
     std::size_t count_;

@@ -8,75 +8,148 @@
 #include "core/dynamics/solver.hpp"
 
 namespace tesserae {
+namespace {
+
+/// Items of a range at least: some 10 to 50 us of work, far more than a thread costs that takes it.
+constexpr std::size_t kBodyGrain = 256, kPairGrain = 512, kContactGrain = 1024;
+
+}  // namespace
+
+/// A stage from its beginning to its end.
+class World::Observed {
+  public:
+    Observed(const World& world, Stage stage, std::size_t items)
+        : observer_(world.observer_), stage_(stage) {
+        if (observer_) observer_->begin(stage, items, world.simulation_, world.step_);
+    }
+    ~Observed() {
+        if (observer_) observer_->end(stage_);
+    }
+    Observed(const Observed&) = delete;
+    Observed& operator=(const Observed&) = delete;
+
+  private:
+    StageObserver* observer_;
+    Stage stage_;
+};
 
 World::World(Bodies bodies, const PhysicsSettings& settings)
-    : simulation_(make_simulation(std::move(bodies), settings)) {}
+    : World(make_simulation(std::move(bodies), settings)) {}
+
+World::World(Simulation simulation, std::uint32_t coloured_from)
+    : simulation_(std::move(simulation)), island_builder_(coloured_from) {}
 
 StepReport World::step(double dt) {
+    Schedule serial;
+    return step(dt, serial);
+}
+
+StepReport World::step(double dt, Schedule& schedule) {
     begin_step(simulation_, step_, dt);
     for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
-        advance_first_half();    // free motion to the middle, where contacts act
-        find_pairs();            // here every pair; parallel/ sorts and sweeps
-        find_contacts();         // narrow phase, contacts keyed by feature id
-        integrate_velocities();  // gravity
+        advance_first_half(schedule);    // free motion to the middle, where contacts act
+        find_pairs(schedule);            // broad phase
+        find_contacts(schedule);         // narrow phase, contacts keyed by feature id
+        integrate_velocities(schedule);  // gravity
         build_islands();
-        solve_islands();        // sequential impulses, warm started
-        advance_second_half();  // rotors projected to unit rotors
-        relax_islands();        // soft contacts give back the velocity that removed overlap
+        solve_islands(schedule);        // sequential impulses, warm started
+        advance_second_half(schedule);  // rotors projected to unit rotors
+        relax_islands(schedule);        // soft contacts give back the velocity that removed overlap
     }
-    return finish_step();
+    return finish_step(schedule);
 }
 
-void World::advance_first_half() {
-    tesserae::advance_first_half(simulation_, step_, all_bodies());
-    require_finite(simulation_, step_);
+void World::advance_first_half(Schedule& schedule) {
+    const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
+    schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
+        tesserae::advance_first_half(simulation_, step_, bodies);
+    });
+    require_finite(schedule);
 }
 
-void World::find_pairs() {
-    if (step_.substep > 0 && !outgrows_bounds(simulation_, step_, all_bodies())) return;
-    update_bounds(simulation_, step_, all_bodies());
-    tesserae::find_pairs(simulation_, step_);
+void World::find_pairs(Schedule& schedule) {
+    const std::size_t count = simulation_.bodies.size();
+    const Observed stage(*this, Stage::kFindPairs, count);
+    const auto outgrows = [&](Range bodies) { return outgrows_bounds(simulation_, step_, bodies); };
+    if (step_.substep > 0 && !schedule.any_range(count, kBodyGrain, outgrows)) return;
+    schedule.for_each_range(count, kBodyGrain,
+                            [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
+    schedule.find_pairs(simulation_, step_);
 }
 
-void World::find_contacts() {
+void World::find_contacts(Schedule& schedule) {
+    const Observed stage(*this, Stage::kFindContacts, step_.pairs.size());
+    const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
+        schedule.for_each_range(count, grain, work);
+    };
+    const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
     for (bool look = true; look;) {
-        step_.contacts.clear();
-        tesserae::find_contacts(simulation_, step_, {0, step_.pairs.size()}, step_.contacts);
-        look = wake_touched(simulation_, step_);
-        if (look) tesserae::find_pairs(simulation_, step_);
+        contacts_.collect(
+            for_each_range, step_.pairs.size(), kPairGrain,
+            [&](Range pairs, std::vector<Contact>& list) {
+                tesserae::find_contacts(simulation_, step_, pairs, list);
+            },
+            step_.contacts);
+        look = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
+               wake_touched(simulation_, step_);
+        if (look) schedule.choose_pairs(simulation_, step_);
     }
     begin_contacts(step_);
-    recall_impulses(simulation_, step_, {0, step_.contacts.size()});
+    schedule.for_each_range(step_.contacts.size(), kContactGrain,
+                            [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
 }
 
-void World::integrate_velocities() {
-    tesserae::integrate_velocities(simulation_, step_, all_bodies());
+void World::integrate_velocities(Schedule& schedule) {
+    const Observed stage(*this, Stage::kIntegrateVelocities, simulation_.bodies.size());
+    schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
+        tesserae::integrate_velocities(simulation_, step_, bodies);
+    });
 }
 
-void World::build_islands() { island_builder_.build(simulation_, step_); }
-
-void World::solve_islands() {
-    for (std::size_t island = 0; island < step_.islands.size(); ++island)
-        solve_island(simulation_, step_, island);
+void World::build_islands() {
+    const Observed stage(*this, Stage::kBuildIslands, step_.contacts.size());
+    island_builder_.build(simulation_, step_);
 }
 
-void World::advance_second_half() {
-    tesserae::advance_second_half(simulation_, step_, all_bodies());
+void World::solve_islands(Schedule& schedule) {
+    const Observed stage(*this, Stage::kSolveIslands, step_.islands.size());
+    schedule.solve_islands(simulation_, step_);
 }
 
-void World::relax_islands() {
-    for (std::size_t island = 0; island < step_.islands.size(); ++island)
-        relax_island(simulation_, step_, island);
-    step_.pushing.clear();
-    list_pushing(step_, {0, step_.impulses.size()}, step_.pushing);
+void World::advance_second_half(Schedule& schedule) {
+    const Observed stage(*this, Stage::kAdvanceSecondHalf, simulation_.bodies.size());
+    schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
+        tesserae::advance_second_half(simulation_, step_, bodies);
+    });
+}
+
+void World::relax_islands(Schedule& schedule) {
+    const Observed stage(*this, Stage::kRelaxIslands, step_.islands.size());
+    schedule.relax_islands(simulation_, step_);
+    pushing_.collect([&](std::size_t count, std::size_t grain,
+                         const auto& work) { schedule.for_each_range(count, grain, work); },
+                     step_.impulses.size(), kContactGrain,
+                     [&](Range contacts, std::vector<ContactImpulse>& list) {
+                         list_pushing(step_, contacts, list);
+                     },
+                     step_.pushing);
     end_substep(simulation_, step_);
 }
 
-StepReport World::finish_step() {
-    require_finite(simulation_, step_);
+StepReport World::finish_step(Schedule& schedule) {
+    const Observed stage(*this, Stage::kFinishStep, step_.contacts.size());
+    require_finite(schedule);
     begin_report(step_);
-    sum_contacts(step_, {0, step_.contacts.size()});
+    schedule.for_each_range(step_.contacts.size(), kReportPiece,
+                            [&](Range contacts) { sum_contacts(step_, contacts); });
     return commit_step(simulation_, step_);
+}
+
+/// Ranges find out whether any body is not finite, and only then the lowest is looked for.
+void World::require_finite(Schedule& schedule) const {
+    const auto has_none = [&](Range bodies) { return !is_finite(simulation_, step_, bodies); };
+    if (schedule.any_range(simulation_.bodies.size(), kBodyGrain, has_none))
+        tesserae::require_finite(simulation_, step_);
 }
 
 }  // namespace tesserae

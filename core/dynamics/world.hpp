@@ -1,12 +1,14 @@
 #pragma once
 
+#include "core/dynamics/chunked_list.hpp"
 #include "core/dynamics/islands.hpp"
+#include "core/dynamics/schedule.hpp"
 #include "core/dynamics/step.hpp"
 
 namespace tesserae {
 
-/// The serial step: every pair tested, islands one by one. The reference that everything faster
-/// must match bit for bit.
+/// Bodies that move. The one text of the step: by itself it is serial, tests every two bodies for
+/// contacts and solves islands one by one; a Schedule shares the same work out, with the same bits.
 ///
 /// All that a step depends on is bodies() and memory(): a world made from both as saved goes on
 /// with the same bits.
@@ -14,32 +16,43 @@ class World {
   public:
     /// @throws InputError   as make_simulation()
     World(Bodies bodies, const PhysicsSettings& settings);
+    /// @param coloured_from   contacts: see IslandBuilder
+    explicit World(Simulation simulation, std::uint32_t coloured_from = kColouredFrom);
 
     /// Advances by dt [s].
     /// @throws InputError        dt is not finite or not > 0
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
+    StepReport step(double dt, Schedule& schedule);
 
+    /// From the next step on the observer sees every stage; null ends that. Changes no result.
+    void observe(StageObserver* observer) { observer_ = observer; }
+
+    const Simulation& simulation() const { return simulation_; }
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
     StepMemory& memory() { return simulation_.memory; }
 
   private:
-    void advance_first_half();
-    void find_pairs();
-    void find_contacts();
-    void integrate_velocities();
-    void build_islands();
-    void solve_islands();
-    void advance_second_half();
-    void relax_islands();
-    StepReport finish_step();
+    class Observed;
 
-    Range all_bodies() const { return {0, simulation_.bodies.size()}; }
+    void advance_first_half(Schedule& schedule);
+    void find_pairs(Schedule& schedule);
+    void find_contacts(Schedule& schedule);
+    void integrate_velocities(Schedule& schedule);
+    void build_islands();
+    void solve_islands(Schedule& schedule);
+    void advance_second_half(Schedule& schedule);
+    void relax_islands(Schedule& schedule);
+    StepReport finish_step(Schedule& schedule);
+    void require_finite(Schedule& schedule) const;
 
     Simulation simulation_;
     StepData step_;
     IslandBuilder island_builder_;
+    ChunkedList<Contact> contacts_;
+    ChunkedList<ContactImpulse> pushing_;
+    StageObserver* observer_ = nullptr;
 };
 
 }  // namespace tesserae

@@ -6,7 +6,7 @@
 
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
-#include "tests/core/dynamics/staged_world.hpp"
+#include "tests/core/dynamics/observed_world.hpp"
 
 namespace tesserae {
 namespace {
@@ -60,23 +60,25 @@ TEST(Needs, WhatIsLeftOutWouldChangeNothing) {
     for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             const Bodies bodies = smooth_heap(150);
-            StagedWorld decided(bodies, settings, coloured_from), all = decided;
-            const Needs& needs = decided.simulation.needs;
+            const Simulation start = make_simulation(bodies, settings);
+            const Needs& needs = start.needs;
             ASSERT_FALSE(needs.friction || needs.restitution || needs.uneven_inertia ||
                          needs.turning);
-            all.simulation.needs = Needs{};
+            Simulation with_all = start;
+            with_all.needs = Needs{};
+            World decided(start, coloured_from), all(with_all, coloured_from);
             std::uint64_t contacts = 0;
             for (int i = 0; i < 200; ++i) {
-                contacts += decided.advance(kStep).contacts;
-                all.advance(kStep);
+                contacts += decided.step(kStep).contacts;
+                all.step(kStep);
             }
             EXPECT_GT(contacts, 10000u);
-            const Bodies &p = decided.simulation.bodies, &q = all.simulation.bodies;
+            const Bodies &p = decided.bodies(), &q = all.bodies();
             EXPECT_EQ(p.position, q.position);
             EXPECT_EQ(p.velocity, q.velocity);
             EXPECT_EQ(p.rotor, q.rotor);
             EXPECT_EQ(p.angular_velocity, q.angular_velocity);
-            EXPECT_TRUE(same_values(decided.simulation.memory, all.simulation.memory));
+            EXPECT_TRUE(same_values(decided.memory(), all.memory()));
         }
 }
 
@@ -90,9 +92,9 @@ TEST(Needs, NoContactTurnsASphereWithoutFriction) {
             if (id % 3 == 0) bodies.angular_velocity[id] = {1, -2, 0.5, 0.1 * id, 3, 1};
             if (id % 7 == 0) bodies.types[bodies.type[id]] = box_type({0.6, 0.5, 0.7, 0.6}, 100);
         }
-        StagedWorld world(bodies, PhysicsSettings{}, coloured_from);
-        for (int i = 0; i < 200; ++i) world.advance(kStep);
-        const Bodies& now = world.simulation.bodies;
+        World world(make_simulation(bodies, PhysicsSettings{}), coloured_from);
+        run(world, 200);
+        const Bodies& now = world.bodies();
         int boxes_turned = 0;
         for (BodyId id = 7; id < bodies.size(); ++id) {
             EXPECT_NE(now.velocity[id], bodies.velocity[id]);

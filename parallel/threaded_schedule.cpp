@@ -1,0 +1,35 @@
+#include "parallel/threaded_schedule.hpp"
+
+#include "core/dynamics/solver.hpp"
+#include "parallel/coloured_island.hpp"
+#include "parallel/ranges.hpp"
+
+namespace tesserae::parallel {
+
+void ThreadedSchedule::for_each_range(std::size_t count, std::size_t grain,
+                                      FunctionRef<void(Range)> work) {
+    parallel::for_each_range(count, grain, work);
+}
+
+bool ThreadedSchedule::any_range(std::size_t count, std::size_t grain,
+                                 FunctionRef<bool(Range)> test) {
+    return parallel::any_range(count, grain, test);
+}
+
+void ThreadedSchedule::find_pairs(const Simulation& simulation, StepData& step) {
+    kept_pairs_.find_pairs(simulation, step);
+}
+
+void ThreadedSchedule::choose_pairs(const Simulation& simulation, StepData& step) {
+    kept_pairs_.choose_pairs(simulation, step);
+}
+
+void ThreadedSchedule::solve_islands(const Simulation& simulation, StepData& step) {
+    island_graph_.run(simulation, step, solve_island, solve_coloured_island, trace_);
+}
+
+void ThreadedSchedule::relax_islands(const Simulation& simulation, StepData& step) {
+    island_graph_.run(simulation, step, relax_island, relax_coloured_island, trace_);
+}
+
+}  // namespace tesserae::parallel
