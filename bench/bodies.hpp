@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/state/bodies.hpp"
 
 namespace tesserae::bench {
 

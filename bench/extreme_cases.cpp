@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bench/bodies.hpp"
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 

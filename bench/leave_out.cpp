@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "bench/thread_time.hpp"
-#include "core/dynamics/islands.hpp"
-#include "core/dynamics/solver.hpp"
-#include "core/dynamics/stage_copy.hpp"
+#include "core/dynamics/solver/solver.hpp"
+#include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/stages/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film.hpp"

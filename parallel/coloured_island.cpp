@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/dynamics/wide_solver.hpp"
+#include "core/dynamics/solver/coloured_solver.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kIslandBodyGrain = 512;
 constexpr std::size_t kPointGrain = 1024;
 
-struct AllThreads {
+class AllThreads {
+  public:
     template <class Work>
     void for_bodies(Range bodies, const Work& work) const {
         for_each_range(bodies.end - bodies.begin, kIslandBodyGrain, [&](Range piece) {
@@ -23,8 +24,16 @@ struct AllThreads {
         });
     }
     template <class Work>
+    void for_batches(BatchRange batches, std::size_t points, const Work& work) const {
+        const std::uint32_t grain = grain_of(points);
+        for_each_range(batches.end - batches.begin, grain, [&](Range piece) {
+            work(BatchRange{batches.begin + static_cast<std::uint32_t>(piece.begin),
+                            batches.begin + static_cast<std::uint32_t>(piece.end)});
+        });
+    }
+    template <class Work>
     double largest(BatchRange batches, std::size_t points, const Work& work) const {
-        const auto grain = static_cast<std::uint32_t>(kPointGrain / kLanes / points);
+        const std::uint32_t grain = grain_of(points);
         const std::uint32_t count = batches.end - batches.begin;
         const std::uint32_t chunks = (count + grain - 1) / grain;
         if (chunks <= 1) return OneThread{}.largest(batches, points, work);
@@ -37,16 +46,21 @@ struct AllThreads {
             },
             [](double a, double b) { return std::max(a, b); });
     }
+
+  private:
+    static std::uint32_t grain_of(std::size_t points) {
+        return static_cast<std::uint32_t>(kPointGrain / kLanes / points);
+    }
 };
 
 }  // namespace
 
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    solve_wide_island(simulation, step, island, AllThreads{});
+    tesserae::solve_coloured_island(simulation, step, island, AllThreads{});
 }
 
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    relax_wide_island(simulation, step, island, AllThreads{});
+    tesserae::relax_coloured_island(simulation, step, island, AllThreads{});
 }
 
 }  // namespace tesserae::parallel

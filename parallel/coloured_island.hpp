@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/solver.hpp"
+#include "core/dynamics/solver/solver.hpp"
 
 namespace tesserae::parallel {
 

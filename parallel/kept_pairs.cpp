@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/dynamics/pairs.hpp"
+#include "core/dynamics/stages/pairs.hpp"
 
 namespace tesserae::parallel {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "core/dynamics/step_data.hpp"
+#include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae::parallel {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/dynamics/pairs.hpp"
+#include "core/dynamics/stages/pairs.hpp"
 
 namespace tesserae::parallel {
 namespace {

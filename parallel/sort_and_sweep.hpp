@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "core/dynamics/chunked_list.hpp"
-#include "core/dynamics/step_data.hpp"
+#include "core/dynamics/stages/chunked_list.hpp"
+#include "core/dynamics/state/step_data.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {

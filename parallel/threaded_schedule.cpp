@@ -1,6 +1,6 @@
 #include "parallel/threaded_schedule.hpp"
 
-#include "core/dynamics/solver.hpp"
+#include "core/dynamics/solver/solver.hpp"
 #include "parallel/coloured_island.hpp"
 #include "parallel/ranges.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/schedule.hpp"
+#include "core/dynamics/stages/schedule.hpp"
 #include "parallel/island_graph.hpp"
 #include "parallel/kept_pairs.hpp"
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "core/dynamics/bodies.hpp"
 #include "core/dynamics/motion_version.hpp"
+#include "core/dynamics/state/bodies.hpp"
 #include "render/description.hpp"
 #include "render/picture_version.hpp"
 

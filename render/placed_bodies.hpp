@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/state/bodies.hpp"
 #include "render/picture.hpp"
 
 namespace tesserae::render {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/state/bodies.hpp"
 
 namespace tesserae::scenes {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/dynamics/islands.hpp"
-#include "core/dynamics/needs.hpp"
+#include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
 #include "render/frame_scene.hpp"
 #include "scenes/memory.hpp"

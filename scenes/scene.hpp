@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/bodies.hpp"
-#include "core/dynamics/settings.hpp"
+#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/state/settings.hpp"
 #include "render/description.hpp"
 #include "scenes/camera_path.hpp"
 #include "scenes/named_bodies.hpp"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/dynamics/energy.hpp"
-#include "core/dynamics/momentum.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/motion_version.hpp"
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/stages/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
 #include "scenes/progress.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
 
 namespace tesserae::bench {
 

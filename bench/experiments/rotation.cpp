@@ -4,7 +4,7 @@
 #include "bench/experiments/elliptic.hpp"
 #include "bench/experiments/experiments.hpp"
 #include "bench/experiments/free_rotation.hpp"
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
 #include "core/error.hpp"
 
 // Boxes that turn freely: no gravity, nothing touches.

@@ -3,7 +3,7 @@
 #include "bench/bodies.hpp"
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/stage_copy.hpp"
+#include "core/dynamics/stages/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 

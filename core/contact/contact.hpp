@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/algebra/rotor.hpp"
-#include "core/dynamics/bodies.hpp"
+#include "core/body_id.hpp"
 
 namespace tesserae {
 

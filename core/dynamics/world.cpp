@@ -2,10 +2,9 @@
 
 #include <utility>
 
-#include "core/dynamics/motion.hpp"
-#include "core/dynamics/pairs.hpp"
-#include "core/dynamics/sleeping.hpp"
-#include "core/dynamics/solver.hpp"
+#include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/motion.hpp"
+#include "core/dynamics/stages/sleeping.hpp"
 
 namespace tesserae {
 namespace {

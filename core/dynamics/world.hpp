@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/dynamics/chunked_list.hpp"
-#include "core/dynamics/islands.hpp"
-#include "core/dynamics/schedule.hpp"
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/stages/chunked_list.hpp"
+#include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/stages/schedule.hpp"
+#include "core/dynamics/stages/step.hpp"
 
 namespace tesserae {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/islands.hpp"
+#include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/world.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"

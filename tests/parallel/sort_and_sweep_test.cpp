@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/dynamics/motion.hpp"
-#include "core/dynamics/pairs.hpp"
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/stages/motion.hpp"
+#include "core/dynamics/stages/pairs.hpp"
+#include "core/dynamics/stages/step.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

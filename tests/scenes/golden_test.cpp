@@ -5,7 +5,7 @@
 // kPictureVersion.
 #include <gtest/gtest.h>
 
-#include "core/dynamics/islands.hpp"
+#include "core/dynamics/stages/islands.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/generate.hpp"
@@ -116,7 +116,8 @@ TEST_F(Golden, AFilmIsAsEver) {
         {"run", TESSERAE_SOURCE_DIR "/scenes/gallery/first.toml", "--set", "physics.duration=0.5",
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")), "fa8fad0753515ca3b38b4be90c82fa55");
+    EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
+              "fa8fad0753515ca3b38b4be90c82fa55");
     EXPECT_EQ(hash_of_content(folder.file("film")), "7059917aee6ee715b6274640f01cb828");
 }
 

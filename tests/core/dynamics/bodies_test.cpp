@@ -1,4 +1,4 @@
-#include "core/dynamics/bodies.hpp"
+#include "core/dynamics/state/bodies.hpp"
 
 #include <gtest/gtest.h>
 

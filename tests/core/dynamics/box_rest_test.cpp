@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
-#include "core/dynamics/bodies.hpp"
-#include "core/dynamics/memory.hpp"
-#include "core/dynamics/settings.hpp"
+#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/state/memory.hpp"
+#include "core/dynamics/state/settings.hpp"
 #include "core/dynamics/world.hpp"
 
 namespace tesserae::testing {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/dynamics/islands.hpp"
+#include "core/dynamics/stages/islands.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <tuple>
 
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/stages/step.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -102,17 +102,17 @@ TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
     const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
     IslandBuilder builder;
     builder.build(simulation, step);
-    const std::vector<Batch> first_time = step.wide.general;
+    const std::vector<Batch> first_time = step.coloured.general;
     builder.build(simulation, step);
-    ASSERT_TRUE(same_bits(step.wide.general, first_time)) << "depends on the step before";
+    ASSERT_TRUE(same_bits(step.coloured.general, first_time)) << "depends on the step before";
 
     ASSERT_EQ(step.islands.size(), 1u);
     ASSERT_TRUE(step.islands.is_coloured(0));
-    const ColouredIslands& wide = step.wide;
+    const ColouredIslands& coloured = step.coloured;
     std::vector<int> seen(step.contacts.size());
     std::size_t batched_pairs = 0, left_over = 0;
-    for (std::size_t colour = 0; colour < wide.colours.size(); ++colour) {
-        const bool is_leftover = colour + 1 == wide.colours.size();
+    for (std::size_t colour = 0; colour < coloured.colours.size(); ++colour) {
+        const bool is_leftover = colour + 1 == coloured.colours.size();
         std::vector<bool> used(kCount, false);
         const auto check = [&](const std::vector<Batch>& batches, BatchRange range, bool round) {
             for (std::uint32_t i = range.begin; i < range.end; ++i)
@@ -127,10 +127,10 @@ TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
                         ++seen[batch.contact[k] + p];
                     }
                     ASSERT_EQ(round, first.a % 2 == 0 && first.b % 2 == 0);
-                    ASSERT_EQ(wide.bodies[batch.b[k]], first.b);
+                    ASSERT_EQ(coloured.bodies[batch.b[k]], first.b);
                     ASSERT_EQ(batch.a[k] == 0, first.a == 0) << "only body 0 does not move";
                     if (first.a > 0) {
-                        ASSERT_EQ(wide.bodies[batch.a[k]], first.a);
+                        ASSERT_EQ(coloured.bodies[batch.a[k]], first.a);
                     }
                     ++batched_pairs, left_over += is_leftover;
                     for (const BodyId id : {first.a, first.b}) {
@@ -140,13 +140,13 @@ TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
                     }
                 }
         };
-        check(wide.round, wide.colours[colour].round, true);
-        check(wide.general, wide.colours[colour].general, false);
+        check(coloured.round, coloured.colours[colour].round, true);
+        check(coloured.general, coloured.colours[colour].general, false);
     }
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ssize(seen)) << "each contact once";
     EXPECT_EQ(batched_pairs, pairs);
     // 64 colours hold 64 of body 1's pairs, 699 in all; those of the others fit.
-    EXPECT_EQ(wide.colours.size(), 65u);
+    EXPECT_EQ(coloured.colours.size(), 65u);
     EXPECT_EQ(left_over, 699u - 64u);
 }
 

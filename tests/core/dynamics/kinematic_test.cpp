@@ -2,8 +2,8 @@
 // others, and that nothing is done to them.
 #include <gtest/gtest.h>
 
-#include "core/dynamics/energy.hpp"
-#include "core/dynamics/momentum.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/dynamics/momentum.hpp"
+#include "core/dynamics/diagnostics/momentum.hpp"
 
 #include <gtest/gtest.h>
 

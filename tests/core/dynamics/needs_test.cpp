@@ -1,4 +1,4 @@
-#include "core/dynamics/needs.hpp"
+#include "core/dynamics/state/needs.hpp"
 
 #include <gtest/gtest.h>
 

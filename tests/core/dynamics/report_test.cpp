@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/dynamics/step.hpp"
+#include "core/dynamics/stages/step.hpp"
 
 namespace tesserae {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/dynamics/energy.hpp"
-#include "core/dynamics/free_rotation.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/stages/free_rotation.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/dynamics/sleeping.hpp"
+#include "core/dynamics/stages/sleeping.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/dynamics/contact_row.hpp"
-#include "core/dynamics/energy.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

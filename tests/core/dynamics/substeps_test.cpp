@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/motion.hpp"
+#include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/dynamics/solver/sweep.hpp"
+
+namespace tesserae {
+
+/// How many lanes of a batch are worked on at a time: the results are the same bits. Batches whose
+/// pairs share movable bodies need kOne, which goes through the lanes in order.
+enum class LaneCount { kOne, kEight };
+
+/// What a coloured island's batches are made into and from.
+struct ColouredStage {
+    const Simulation& simulation;
+    StepData& step;
+    double mass_unit;  ///< [kg]
+};
+
+// Of round and of general batches: makes their rows and applies the impulses that they start from;
+// one iteration; step.impulses of their contacts. Batches of one colour may be worked on at the
+// same time.
+
+void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
+/// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
+double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
+void keep_round(const ColouredStage& stage, BatchRange batches);
+
+void start_general(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
+double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
+void keep_general(const ColouredStage& stage, BatchRange batches);
+
+}  // namespace tesserae

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/dynamics/solver/coloured_kernels.hpp"
+#include "core/dynamics/solver/contact_row.hpp"
+#include "core/dynamics/solver/lanes.hpp"
+
+namespace tesserae::lanes {
+
+/// A contact of each lane as it is put into rows: four floats each.
+struct alignas(32) EightPoints {
+    using Fours = std::array<std::array<float, 4>, kLanes>;
+    Fours normal = {}, r_a = {}, r_b = {};
+    Fours velocity = {};  ///< relative, of the start
+    Fours impulse = {};   ///< the tangent one, to start from
+    Fours along = {};     ///< target, relax target, keep, normal impulse
+};
+
+inline void put(const Vec4& v, std::array<float, 4>& to) {
+    Eigen::Map<Eigen::Vector4f>(to.data()) = v.cast<float>();
+}
+
+/// Of a body that contacts do not move the offset is left out: it may be too large for a float.
+inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
+                      EightPoints& points) {
+    const Simulation& simulation = stage.simulation;
+    const StepData& step = stage.step;
+    const Contact& c = step.contacts[index];
+    const ContactImpulse& impulse = step.impulses[index];
+    const Vec4 r_a = c.point - step.position[c.a], r_b = c.point - step.position[c.b];
+    const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
+    const double along = c.normal.dot(v);
+    const ContactTargets targets = targets_of(simulation, step, c, along);
+    put(c.normal, points.normal[lane]);
+    if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
+    if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
+    put(v - along * c.normal, points.velocity[lane]);
+    put(impulse.tangent / stage.mass_unit, points.impulse[lane]);
+    put({targets.solve - along, targets.relax - along, targets.keep,
+         impulse.normal / stage.mass_unit},
+        points.along[lane]);
+}
+
+/// As a float that can be squared.
+inline float float_friction(const Simulation& simulation, const Contact& c) {
+    return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), 1e18));
+}
+
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
+                                               const EightPoints::Fours& fours) {
+    std::array<const float*, Lane<F>::count> from;
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] = fours[lane.first + i].data();
+    LaneVec4<F> v;
+    load_four(from, v.c);
+    return v;
+}
+
+/// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
+/// @return the impulse to start from
+template <class F>
+[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const EightPoints& points,
+                                             F response, F least, NormalRow& row) {
+    const LaneVec4<F> along = load(lane, points.along);
+    // Points that a lane does not have keep nothing.
+    const F inverse = (F{} + 1.0f) / response;
+    const F mass = response > least ? (along[2] > F{} ? inverse : F{}) : F{};
+    lane.store(mass, row.mass);
+    lane.store(along[0], row.target);
+    lane.store(along[1], row.relax_target);
+    lane.store(along[2], row.keep);
+    lane.store(along[3], row.impulse);
+    return along[3];
+}
+
+/// One step of a normal impulse at the change v of the normal velocity.
+/// @return its change
+template <class F>
+[[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, NormalRow& row, F v, bool soft,
+                                             Pass pass, F& impulse) {
+    const bool relax = pass == Pass::kRelax;
+    const F old = lane.load(row.impulse);
+    const F target = lane.load(relax ? row.relax_target : row.target);
+    impulse = old + lane.load(row.mass) * (target - v);
+    if (soft && !relax) impulse = lane.load(row.keep) * impulse;
+    impulse = greater_of(impulse, F{});
+    lane.store(impulse, row.impulse);
+    return impulse - old;
+}
+
+/// The nearest of length at most `most`; zero stays zero.
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> clamped(const LaneVec4<F>& impulse, F most) {
+    const F squared = dot(impulse, impulse);
+    const F scale = squared > most * most ? most / root_of(squared) : F{} + 1.0f;
+    return scale * impulse;
+}
+
+/// |change| over mass: what is left to solve [m/s].
+template <class F>
+[[gnu::always_inline]] inline F velocity_left(const Lane<F>& lane, const NormalRow& row, F change) {
+    const F mass = lane.load(row.mass);
+    return mass > F{} ? magnitude_of(change) / mass : F{};
+}
+
+/// Calls work(Lane<F>, batch) for all lanes of the batches.
+template <class Work>
+void for_lanes(BatchRange batches, LaneCount lanes, bool backward, const Work& work) {
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        const std::uint32_t batch = backward ? batches.begin + (batches.end - 1 - i) : i;
+        if (lanes == LaneCount::kEight) {
+            work(Lane<Float8>{}, batch);
+            continue;
+        }
+        for (std::size_t k = 0; k < kLanes; ++k)
+            work(Lane<float>{backward ? kLanes - 1 - k : k}, batch);
+    }
+}
+
+}  // namespace tesserae::lanes

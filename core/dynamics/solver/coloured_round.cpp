@@ -1,0 +1,154 @@
+#include "core/dynamics/solver/coloured_points.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace lanes;
+
+template <class F>
+[[gnu::always_inline]] inline void apply(const LaneVec4<F>& impulse, Motion<F>& a, Motion<F>& b) {
+    a.velocity = a.velocity - a.inverse_mass * impulse;
+    b.velocity = b.velocity + b.inverse_mass * impulse;
+}
+
+/// A tangent impulse also turns the bodies, whose offsets are arm_a n and -arm_b n.
+template <class F>
+[[gnu::always_inline]] inline void turn(const LaneVec4<F>& n, const LaneVec4<F>& tangent, F arm_a,
+                                        F arm_b, Motion<F>& a, Motion<F>& b) {
+    const LaneBivector<F> moment = wedge(n, tangent);
+    a.angular_velocity = a.angular_velocity - (a.inverse_inertia * arm_a) * moment;
+    b.angular_velocity = b.angular_velocity - (b.inverse_inertia * arm_b) * moment;
+}
+
+template <bool kFriction, class F>
+[[gnu::always_inline]] inline void start_batch(const ColouredStage& stage, const Lane<F>& lane,
+                                               const EightPoints& points, std::uint32_t batch) {
+    ColouredIslands& coloured = stage.step.coloured;
+    LaneBodies<F> bodies_a(lane, coloured.changes.data(), coloured.round[batch].a);
+    LaneBodies<F> bodies_b(lane, coloured.changes.data(), coloured.round[batch].b);
+    Motion<F> a = bodies_a.template load<kFriction>(), b = bodies_b.template load<kFriction>();
+    const F one = F{} + 1.0f, response = a.inverse_mass + b.inverse_mass;
+    const LaneVec4<F> n = load(lane, points.normal);
+
+    RoundRow& row = coloured.round_rows[batch];
+    store(lane, n, row.normal);
+    const F normal_impulse = start_normal(lane, points, response, F{}, row.along);
+    LaneVec4<F> impulse = normal_impulse * n;
+    if constexpr (kFriction) {
+        RoundFriction& friction = coloured.round_friction[batch];
+        const F arm_a = dot(n, load(lane, points.r_a)), arm_b = -dot(n, load(lane, points.r_b));
+        const F along_tangent =
+            response + (a.inverse_inertia * (arm_a * arm_a) + b.inverse_inertia * (arm_b * arm_b));
+        lane.store(arm_a, friction.arm_a);
+        lane.store(arm_b, friction.arm_b);
+        lane.store(along_tangent > F{} ? one / along_tangent : F{}, friction.mass);
+        store(lane, load(lane, points.velocity), friction.slip);
+        // The normal may have turned since the impulse was.
+        const LaneVec4<F> last = load(lane, points.impulse);
+        const LaneVec4<F> tangent =
+            clamped<F>(last - dot(n, last) * n, lane.load(friction.friction) * normal_impulse);
+        store(lane, tangent, friction.impulse);
+        turn(n, tangent, arm_a, arm_b, a, b);
+        impulse = impulse + tangent;
+    }
+    apply(impulse, a, b);
+    bodies_a.template store<kFriction>(a);
+    bodies_b.template store<kFriction>(b);
+}
+
+/// The normal first and then friction, as solve_row() does: the response is the same along every
+/// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
+template <bool kFriction, class F>
+[[gnu::always_inline]] inline F solve_batch(const ColouredStage& stage, const Lane<F>& lane,
+                                            std::uint32_t batch, Sweep sweep) {
+    ColouredIslands& coloured = stage.step.coloured;
+    LaneBodies<F> bodies_a(lane, coloured.changes.data(), coloured.round[batch].a);
+    LaneBodies<F> bodies_b(lane, coloured.changes.data(), coloured.round[batch].b);
+    Motion<F> a = bodies_a.template load<kFriction>(), b = bodies_b.template load<kFriction>();
+    RoundRow& row = coloured.round_rows[batch];
+    const LaneVec4<F> n = load(lane, row.normal);
+
+    const LaneVec4<F> v = b.velocity - a.velocity;
+    const F along = dot(n, v);
+    const bool soft = stage.simulation.settings.solver == Solver::kSoft;
+    F normal_impulse;
+    const F change = solve_normal(lane, row.along, along, soft, sweep.pass, normal_impulse);
+    LaneVec4<F> impulse = change * n;
+    if constexpr (kFriction) {
+        RoundFriction& friction = coloured.round_friction[batch];
+        const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
+        const LaneBivector<F> w = arm_a * a.angular_velocity + arm_b * b.angular_velocity;
+        const LaneVec4<F> slip = load(lane, friction.slip) + ((v - along * n) - velocity_at(w, n));
+        const LaneVec4<F> old = load(lane, friction.impulse);
+        const LaneVec4<F> tangent = clamped<F>(old - lane.load(friction.mass) * slip,
+                                               lane.load(friction.friction) * normal_impulse);
+        store(lane, tangent, friction.impulse);
+        const LaneVec4<F> tangent_change = tangent - old;
+        turn(n, tangent_change, arm_a, arm_b, a, b);
+        impulse = impulse + tangent_change;
+    }
+    apply(impulse, a, b);
+    bodies_a.template store<kFriction>(a);
+    bodies_b.template store<kFriction>(b);
+    return sweep.last ? velocity_left(lane, row.along, change) : F{};
+}
+
+template <bool kFriction>
+void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
+    const Simulation& simulation = stage.simulation;
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        const Batch& batch = coloured.round[i];
+        EightPoints points;
+        if constexpr (kFriction) coloured.round_friction[i].friction = {};
+        for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
+            put_point(stage, batch.contact[k], k, points);
+            const Contact& c = stage.step.contacts[batch.contact[k]];
+            if constexpr (kFriction)
+                coloured.round_friction[i].friction.lane[k] = float_friction(simulation, c);
+        }
+        for_lanes({i, i + 1}, lanes, false, [&](const auto& lane, std::uint32_t) {
+            start_batch<kFriction>(stage, lane, points, i);
+        });
+    }
+}
+
+template <bool kFriction>
+double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
+    float most = 0;
+    for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
+        const auto left = solve_batch<kFriction>(stage, lane, batch, sweep);
+        if (sweep.last) most = std::max(most, greatest_lane(left));
+    });
+    return most;
+}
+
+}  // namespace
+
+void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
+    return stage.step.coloured.friction ? start_all<true>(stage, batches, lanes)
+                                        : start_all<false>(stage, batches, lanes);
+}
+
+double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
+    return stage.step.coloured.friction ? sweep_all<true>(stage, batches, sweep, lanes)
+                                        : sweep_all<false>(stage, batches, sweep, lanes);
+}
+
+void keep_round(const ColouredStage& stage, BatchRange batches) {
+    const ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        const Batch& batch = coloured.round[i];
+        for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
+            ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];
+            impulse.normal = stage.mass_unit * coloured.round_rows[i].along.impulse.lane[k];
+            impulse.tangent.setZero();
+            if (!coloured.friction) continue;
+            for (int axis = 0; axis < 4; ++axis)
+                impulse.tangent[axis] =
+                    stage.mass_unit * coloured.round_friction[i].impulse[axis].lane[k];
+        }
+    }
+}
+
+}  // namespace tesserae

@@ -1,0 +1,79 @@
+#include "core/dynamics/solver/coloured_solver.hpp"
+
+namespace tesserae {
+namespace {
+
+BodyInertia packed(const BivectorMap& map, double mass_unit) {
+    BodyInertia inertia;
+    std::size_t k = 0;
+    for (int i = 0; i < 6; ++i)
+        for (int j = i; j < 6; ++j, ++k)
+            inertia.entry[k / 4][k % 4] = static_cast<float>(map(i, j) * mass_unit);
+    return inertia;
+}
+
+/// Of a body that is isotropic, in a scene where others are not.
+BodyInertia packed(double inverse) {
+    BodyInertia inertia;
+    for (std::size_t k : {0, 6, 11, 15, 18, 20})
+        inertia.entry[k / 4][k % 4] = static_cast<float>(inverse);
+    return inertia;
+}
+
+Bivector angular_change(const BodyChange& change) {
+    const auto& w = change.first_planes;
+    return {w[0], w[1], w[2], w[3], change.rest[0], change.rest[1]};
+}
+
+Vec4 velocity_change(const BodyChange& change) {
+    const auto& v = change.velocity;
+    return assembled(v[0], v[1], v[2], v[3]);
+}
+
+}  // namespace
+
+void begin_changes(const ColouredStage& stage, Range bodies) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = coloured.bodies[i];
+        const TypeProperties& type = stage.simulation.type_of(id);
+        const double inverse = type.isotropic ? type.inverse_inertia.xy * stage.mass_unit : 0;
+        coloured.changes[i] = {};
+        coloured.changes[i].rest[2] = static_cast<float>(type.inverse_mass * stage.mass_unit);
+        coloured.changes[i].rest[3] = static_cast<float>(inverse);
+        if (!coloured.turns_unevenly) continue;
+        coloured.inertias[i] = type.isotropic
+                                   ? packed(inverse)
+                                   : packed(stage.step.inverse_inertia[id], stage.mass_unit);
+    }
+}
+
+void add_changes(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        step.velocity[id] += velocity_change(step.coloured.changes[i]);
+        if (!stage.simulation.needs.turning) continue;
+        step.angular_velocity[id] += angular_change(step.coloured.changes[i]);
+        if (!step.coloured.angular_velocity.empty())
+            step.coloured.angular_velocity[i] = step.angular_velocity[id];
+    }
+}
+
+void take_changes_back(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        BodyChange& change = step.coloured.changes[i];
+        step.velocity[id] -= velocity_change(change);
+        if (!stage.simulation.needs.turning) continue;
+        const Bivector turned = step.angular_velocity[id] - step.coloured.angular_velocity[i];
+        const Bivector all = angular_change(change) + turned;
+        change.first_planes = {static_cast<float>(all.xy), static_cast<float>(all.xz),
+                               static_cast<float>(all.xw), static_cast<float>(all.yz)};
+        change.rest[0] = static_cast<float>(all.yw), change.rest[1] = static_cast<float>(all.zw);
+        step.angular_velocity[id] = step.angular_velocity[id] - angular_change(change);
+    }
+}
+
+}  // namespace tesserae

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/dynamics/solver/coloured_kernels.hpp"
+
+namespace tesserae {
+
+// Coloured islands are solved in float, eight contacts at a time: velocities as changes since the
+// sub-step's start, which are added to the state at the end, and targets less what the start has,
+// worked out in double. So neither a body's place nor its speed costs accuracy. The points of a
+// pair are one item of a colour: its bodies are read and written once for all of them.
+//
+// The colours are the same for any number of threads, and so are the bits.
+
+/// Does the parts of a pass one after the other; parallel/ has one that uses all threads.
+struct OneThread {
+    /// Calls work(Range) for pieces of the bodies.
+    template <class Work>
+    void for_bodies(Range bodies, const Work& work) const {
+        work(bodies);
+    }
+    /// Calls work(BatchRange) for pieces of the batches.
+    /// @param points   of a batch, about
+    template <class Work>
+    void for_batches(BatchRange batches, std::size_t /*points*/, const Work& work) const {
+        if (batches.begin < batches.end) work(batches);
+    }
+    /// The same with results, of which it returns the largest, at least 0.
+    template <class Work>
+    double largest(BatchRange batches, std::size_t /*points*/, const Work& work) const {
+        return batches.begin < batches.end ? work(batches) : 0;
+    }
+};
+
+/// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
+void begin_changes(const ColouredStage& stage, Range bodies);
+/// Adds the changes to the velocities.
+void add_changes(const ColouredStage& stage, Range bodies);
+/// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
+/// velocity, as if by an impulse.
+void take_changes_back(const ColouredStage& stage, Range bodies);
+
+/// One coloured island and its colours.
+class ColouredIsland {
+  public:
+    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island)
+        : all_(step.coloured),
+          place_(step.islands.coloured[island]),
+          stage_{simulation, step, all_.mass_unit[place_]} {}
+
+    const ColouredStage& stage() const { return stage_; }
+    Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
+
+    /// Calls visit(batches of a colour, threads, lanes) for every colour in its turn. The last one
+    /// holds what is left over, which shares bodies: one thread and one lane.
+    template <class Threads, class Visit>
+    void for_colours(const Threads& threads, LaneCount lanes, bool backward,
+                     const Visit& visit) const {
+        const std::uint32_t first = all_.first_colour[place_];
+        const std::uint32_t count = all_.first_colour[place_ + 1] - first;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const std::uint32_t colour = backward ? count - 1 - i : i;
+            const ColourBatches& batches = all_.colours[first + colour];
+            if (colour + 1 < count)
+                visit(batches, threads, lanes);
+            else
+                visit(batches, OneThread{}, LaneCount::kOne);
+        }
+    }
+
+  private:
+    const ColouredIslands& all_;
+    std::uint32_t place_;
+    ColouredStage stage_;
+};
+
+/// @return the residual of the last iteration [m/s]
+template <class Threads>
+double iterate_coloured(const ColouredIsland& island, Pass pass, const Threads& threads,
+                        LaneCount lanes) {
+    const ColouredStage& stage = island.stage();
+    double residual = 0;
+    for (int i = 0; i < stage.simulation.settings.iterations; ++i) {
+        const Sweep sweep = sweep_of(stage.simulation, pass, i);
+        island.for_colours(
+            threads, lanes, sweep.backward,
+            [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
+                const auto round = [&](BatchRange piece) {
+                    return sweep_round(stage, piece, sweep, at_once);
+                };
+                const auto general = [&](BatchRange piece) {
+                    return sweep_general(stage, piece, sweep, at_once);
+                };
+                double of_round = 0;
+                if (!sweep.backward) of_round = at_work.largest(batches.round, 1, round);
+                residual =
+                    std::max(residual, at_work.largest(batches.general, kManifoldPoints, general));
+                if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
+                residual = std::max(residual, of_round);
+            });
+    }
+    return residual;
+}
+
+/// solve_island() of a coloured island.
+template <class Threads>
+void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    const ColouredIsland coloured(simulation, step, island);
+    const ColouredStage& stage = coloured.stage();
+    threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_changes(stage, bodies); });
+    coloured.for_colours(
+        threads, lanes, false,
+        [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
+            at_work.for_batches(batches.round, 1,
+                                [&](BatchRange piece) { start_round(stage, piece, at_once); });
+            at_work.for_batches(batches.general, kManifoldPoints,
+                                [&](BatchRange piece) { start_general(stage, piece, at_once); });
+        });
+    step.residual[island] = iterate_coloured(coloured, Pass::kSolve, threads, lanes);
+    threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
+}
+
+/// relax_island() of a coloured island.
+template <class Threads>
+void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    const ColouredIsland coloured(simulation, step, island);
+    const ColouredStage& stage = coloured.stage();
+    if (simulation.settings.solver == Solver::kSoft) {
+        threads.for_bodies(coloured.bodies(),
+                           [&](Range bodies) { take_changes_back(stage, bodies); });
+        step.residual[island] = iterate_coloured(coloured, Pass::kRelax, threads, lanes);
+        threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
+    }
+    coloured.for_colours(
+        threads, lanes, false, [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+            at_work.for_batches(batches.round, 1,
+                                [&](BatchRange piece) { keep_round(stage, piece); });
+            at_work.for_batches(batches.general, kManifoldPoints,
+                                [&](BatchRange piece) { keep_general(stage, piece); });
+        });
+}
+
+}  // namespace tesserae

@@ -1,0 +1,259 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "core/dynamics/state/coloured_rows.hpp"
+
+#ifdef __AVX__
+#include <immintrin.h>
+#elif defined(__GNUC__)
+// Without AVX eight floats take two registers, and functions that hand them on are all inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+// The solver's kernels are templates over F, float or Float8: with the former they work on one lane
+// of a batch, with the latter on all eight. Every operation is rounded as IEEE says, element by
+// element, so that both give the same bits.
+
+namespace tesserae::lanes {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
+
+// All functions here end up in one loop: a call would put the vectors into memory.
+
+[[gnu::always_inline]] inline float root_of(float x) { return std::sqrt(x); }
+[[gnu::always_inline]] inline Float8 root_of(Float8 x) {
+#ifdef __AVX__
+    return _mm256_sqrt_ps(x);
+#else
+    for (std::size_t i = 0; i < kLanes; ++i) x[i] = std::sqrt(x[i]);
+    return x;
+#endif
+}
+
+/// The greater one; b if they are equal or any is no number.
+template <class F>
+[[gnu::always_inline]] inline F greater_of(F a, F b) {
+    return a > b ? a : b;
+}
+template <class F>
+[[gnu::always_inline]] inline F magnitude_of(F a) {
+    return greater_of(a, -a);
+}
+[[gnu::always_inline]] inline float greatest_lane(float x) { return x; }
+[[gnu::always_inline]] inline float greatest_lane(Float8 x) {
+    float greatest = x[0];
+    for (std::size_t i = 1; i < kLanes; ++i) greatest = greater_of(greatest, x[i]);
+    return greatest;
+}
+
+/// Which lanes of a batch are worked on.
+template <class F>
+struct Lane;
+template <>
+struct Lane<Float8> {
+    static constexpr std::size_t first = 0, count = kLanes;
+    [[gnu::always_inline]] Float8 load(const Eight& from) const {
+        Float8 x;
+        std::memcpy(&x, from.lane.data(), sizeof x);
+        return x;
+    }
+    [[gnu::always_inline]] void store(Float8 x, Eight& to) const {
+        std::memcpy(to.lane.data(), &x, sizeof x);
+    }
+};
+template <>
+struct Lane<float> {
+    static constexpr std::size_t count = 1;
+    std::size_t first;
+    [[gnu::always_inline]] float load(const Eight& from) const { return from.lane[first]; }
+    [[gnu::always_inline]] void store(float x, Eight& to) const { to.lane[first] = x; }
+};
+
+// ---- four floats of eight records, transposed ----
+[[gnu::always_inline]] inline void load_four(const std::array<const float*, 1>& from,
+                                             std::array<float, 4>& to) {
+    std::memcpy(&to, from[0], sizeof to);
+}
+[[gnu::always_inline]] inline void store_four(const std::array<float, 4>& from,
+                                              const std::array<float*, 1>& to) {
+    std::memcpy(to[0], &from, sizeof from);
+}
+[[gnu::always_inline]] inline void load_four(const std::array<const float*, kLanes>& from,
+                                             std::array<Float8, 4>& to) {
+    std::array<Float8, 4> r;  // lane i's four, and those of lane i + 4
+    for (std::size_t i = 0; i < 4; ++i) {
+        Float4 low, high;
+        std::memcpy(&low, from[i], sizeof low);
+        std::memcpy(&high, from[i + 4], sizeof high);
+        r[i] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    const Float8 a = __builtin_shufflevector(r[0], r[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Float8 b = __builtin_shufflevector(r[0], r[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Float8 c = __builtin_shufflevector(r[2], r[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Float8 d = __builtin_shufflevector(r[2], r[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    to[0] = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);
+    to[1] = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);
+    to[2] = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);
+    to[3] = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+[[gnu::always_inline]] inline void store_four(const std::array<Float8, 4>& from,
+                                              const std::array<float*, kLanes>& to) {
+    const Float8 a = __builtin_shufflevector(from[0], from[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Float8 b = __builtin_shufflevector(from[0], from[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Float8 c = __builtin_shufflevector(from[2], from[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Float8 d = __builtin_shufflevector(from[2], from[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    const std::array<Float8, 4> r = {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
+                                     __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
+                                     __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+                                     __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Float4 low = __builtin_shufflevector(r[i], r[i], 0, 1, 2, 3);
+        const Float4 high = __builtin_shufflevector(r[i], r[i], 4, 5, 6, 7);
+        std::memcpy(to[i], &low, sizeof low);
+        std::memcpy(to[i + 4], &high, sizeof high);
+    }
+}
+
+// ---- vectors and bivectors of lanes ----
+template <class F>
+struct LaneVec4 {
+    std::array<F, 4> c;
+    [[gnu::always_inline]] F& operator[](std::size_t i) { return c[i]; }
+    [[gnu::always_inline]] const F& operator[](std::size_t i) const { return c[i]; }
+    [[gnu::always_inline]] friend LaneVec4 operator+(const LaneVec4& a, const LaneVec4& b) {
+        return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]};
+    }
+    [[gnu::always_inline]] friend LaneVec4 operator-(const LaneVec4& a, const LaneVec4& b) {
+        return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]};
+    }
+    [[gnu::always_inline]] friend LaneVec4 operator*(F k, const LaneVec4& a) {
+        return {k * a[0], k * a[1], k * a[2], k * a[3]};
+    }
+};
+template <class F>
+[[gnu::always_inline]] inline F dot(const LaneVec4<F>& a, const LaneVec4<F>& b) {
+    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+}
+
+/// Planes in the order xy xz xw yz yw zw, as everywhere.
+template <class F>
+struct LaneBivector {
+    std::array<F, 6> c;
+    [[gnu::always_inline]] F& operator[](std::size_t i) { return c[i]; }
+    [[gnu::always_inline]] const F& operator[](std::size_t i) const { return c[i]; }
+    [[gnu::always_inline]] friend LaneBivector operator+(const LaneBivector& a,
+                                                         const LaneBivector& b) {
+        return {a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5]};
+    }
+    [[gnu::always_inline]] friend LaneBivector operator-(const LaneBivector& a,
+                                                         const LaneBivector& b) {
+        return {a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3], a[4] - b[4], a[5] - b[5]};
+    }
+    [[gnu::always_inline]] friend LaneBivector operator*(F k, const LaneBivector& a) {
+        return {k * a[0], k * a[1], k * a[2], k * a[3], k * a[4], k * a[5]};
+    }
+};
+template <class F>
+[[gnu::always_inline]] inline LaneBivector<F> wedge(const LaneVec4<F>& a, const LaneVec4<F>& b) {
+    return {a[0] * b[1] - a[1] * b[0], a[0] * b[2] - a[2] * b[0], a[0] * b[3] - a[3] * b[0],
+            a[1] * b[2] - a[2] * b[1], a[1] * b[3] - a[3] * b[1], a[2] * b[3] - a[3] * b[2]};
+}
+/// tesserae::velocity_at().
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> velocity_at(const LaneBivector<F>& w,
+                                                      const LaneVec4<F>& r) {
+    return {-(w[0] * r[1] + w[1] * r[2] + w[2] * r[3]), w[0] * r[0] - (w[3] * r[2] + w[4] * r[3]),
+            (w[1] * r[0] + w[3] * r[1]) - w[5] * r[3], w[2] * r[0] + w[4] * r[1] + w[5] * r[2]};
+}
+
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
+                                               const std::array<Eight, 4>& from) {
+    return {lane.load(from[0]), lane.load(from[1]), lane.load(from[2]), lane.load(from[3])};
+}
+template <class F, std::size_t kCount>
+[[gnu::always_inline]] inline void store(const Lane<F>& lane, const LaneVec4<F>& x,
+                                         std::array<Eight, kCount>& to) {
+    for (std::size_t i = 0; i < kCount; ++i) lane.store(x[i], to[i]);
+}
+/// The first three, and 0.
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
+                                               const std::array<Eight, 3>& from) {
+    return {lane.load(from[0]), lane.load(from[1]), lane.load(from[2]), F{}};
+}
+
+/// The motion of each lane's body.
+template <class F>
+struct Motion {
+    LaneVec4<F> velocity;
+    LaneBivector<F> angular_velocity;
+    F inverse_mass, inverse_inertia;
+};
+
+/// The records of one body of each lane. The first record of all is only read.
+template <class F>
+class LaneBodies {
+    static constexpr std::size_t kCount = Lane<F>::count;
+    using Four = std::array<float, 4>;
+
+  public:
+    [[gnu::always_inline]] LaneBodies(const Lane<F>& lane, BodyChange* records,
+                                      const std::array<std::uint32_t, kLanes>& places) {
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const std::uint32_t place = places[lane.first + i];
+            from_[i] = records + place;
+            to_[i] = place == 0 ? &nowhere_ : records + place;
+        }
+    }
+    LaneBodies(const LaneBodies&) = delete;
+    LaneBodies& operator=(const LaneBodies&) = delete;
+
+    /// kTurns: with the angular velocity.
+    template <bool kTurns>
+    [[gnu::always_inline]] Motion<F> load() const {
+        Motion<F> m{};
+        std::array<F, 4> w, last;
+        load_four<&BodyChange::velocity>(m.velocity.c);
+        load_four<&BodyChange::rest>(last);
+        if constexpr (kTurns) {
+            load_four<&BodyChange::first_planes>(w);
+            m.angular_velocity = {w[0], w[1], w[2], w[3], last[0], last[1]};
+        }
+        m.inverse_mass = last[2], m.inverse_inertia = last[3];
+        return m;
+    }
+    template <bool kTurns>
+    [[gnu::always_inline]] void store(const Motion<F>& m) {
+        store_four<&BodyChange::velocity>(m.velocity.c);
+        if constexpr (kTurns) {
+            const LaneBivector<F>& w = m.angular_velocity;
+            store_four<&BodyChange::first_planes>({w[0], w[1], w[2], w[3]});
+            store_four<&BodyChange::rest>({w[4], w[5], m.inverse_mass, m.inverse_inertia});
+        }
+    }
+
+  private:
+    template <Four BodyChange::*kPart>
+    [[gnu::always_inline]] void load_four(std::array<F, 4>& to) const {
+        std::array<const float*, kCount> from;
+        for (std::size_t i = 0; i < kCount; ++i) from[i] = (from_[i]->*kPart).data();
+        lanes::load_four(from, to);
+    }
+    template <Four BodyChange::*kPart>
+    [[gnu::always_inline]] void store_four(const std::array<F, 4>& x) {
+        std::array<float*, kCount> to;
+        for (std::size_t i = 0; i < kCount; ++i) to[i] = (to_[i]->*kPart).data();
+        lanes::store_four(x, to);
+    }
+
+    BodyChange nowhere_;
+    std::array<const BodyChange*, kCount> from_;
+    std::array<BodyChange*, kCount> to_;
+};
+
+}  // namespace tesserae::lanes

@@ -1,0 +1,149 @@
+#include "core/dynamics/solver/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/dynamics/solver/coloured_solver.hpp"
+#include "core/dynamics/solver/contact_row.hpp"
+
+namespace tesserae {
+namespace {
+
+template <bool kTurning>
+void apply_impulse(const Simulation& simulation, StepData& step, BodyId id, const Vec4& r,
+                   const Vec4& impulse) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (!type.movable) return;
+    step.velocity[id] += type.inverse_mass * impulse;
+    if constexpr (kTurning)
+        step.angular_velocity[id] += angular_response(simulation, step, id, wedge(r, impulse));
+}
+
+template <bool kTurning>
+void apply_impulse(const Simulation& simulation, StepData& step, const ContactRow& row,
+                   const Vec4& impulse) {
+    apply_impulse<kTurning>(simulation, step, row.a, row.r_a, -impulse);
+    apply_impulse<kTurning>(simulation, step, row.b, row.r_b, impulse);
+}
+
+/// The friction impulse for a relative velocity v: that which ends the slip, if friction allows it.
+/// Else the largest that it allows, against the slip: clamping the former would be against what
+/// turns into the slip by the bodies' responses, and a box that slides on its corners would push
+/// each aside instead of slowing down (by 24 % too little). A step against the slip itself ends
+/// where both are parallel.
+Vec4 friction_impulse(const ContactRow& row, const Vec4& v) {
+    const Vec4 slip = v - row.normal.dot(v) * row.normal;
+    const double most = row.friction * row.normal_impulse;
+    const Vec4 impulse = row.tangent_impulse - row.tangent_mass * slip;
+    if (impulse.squaredNorm() <= most * most) return impulse;
+    return clamped_to_ball(row.tangent_impulse - row.slide_mass * slip, most);
+}
+
+/// The normal first and then friction, so that no contact ends with more of it than its normal
+/// impulse allows; what the normal impulse does to the slip is known from the row, so that the
+/// bodies' velocities are read and written once.
+/// @return the change of the normal impulse [N s]
+template <NormalPass ContactRow::*kPass, bool kTurning>
+double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
+    const NormalPass& pass = row.*kPass;
+    const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
+    const double normal = std::max(
+        0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - row.normal.dot(v)));
+    const double change = normal - row.normal_impulse;
+    if (change == 0 && normal == 0) return 0;  // apart, and friction is 0 too
+    row.normal_impulse = normal;
+    Vec4 impulse = change * row.normal;
+    if (row.friction > 0) {
+        const Vec4 tangent = friction_impulse(row, v + change * row.normal_response);
+        impulse += tangent - row.tangent_impulse;
+        row.tangent_impulse = tangent;
+    }
+    apply_impulse<kTurning>(simulation, step, row, impulse);
+    return change;
+}
+
+/// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
+template <NormalPass ContactRow::*kPass, bool kTurning>
+double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
+                  Sweep sweep) {
+    double residual = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
+        const double change = solve_row<kPass, kTurning>(simulation, step, row);
+        if (sweep.last && change != 0)
+            residual = std::max(residual, std::abs(change) / row.relax.mass);
+    }
+    return residual;
+}
+
+template <bool kTurning>
+double iterate(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
+               Pass pass) {
+    double residual = 0;
+    for (int i = 0; i < simulation.settings.iterations; ++i) {
+        const Sweep sweep = sweep_of(simulation, pass, i);
+        residual = pass == Pass::kSolve
+                       ? sweep_rows<&ContactRow::solve, kTurning>(simulation, step, rows, sweep)
+                       : sweep_rows<&ContactRow::relax, kTurning>(simulation, step, rows, sweep);
+    }
+    return residual;
+}
+
+/// The impulses that the rows start from, and all iterations.
+template <bool kTurning>
+double solve_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows) {
+    for (const ContactRow& row : rows)
+        apply_impulse<kTurning>(simulation, step, row,
+                                row.normal_impulse * row.normal + row.tangent_impulse);
+    return iterate<kTurning>(simulation, step, rows, Pass::kSolve);
+}
+
+std::span<ContactRow> rows_of(StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    return {&step.rows[step.islands.first_row[island]], places.end - places.begin};
+}
+
+std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t island) {
+    const Range places = step.islands.places(island);
+    return {&step.islands.contacts[places.begin], places.end - places.begin};
+}
+
+void make_rows(const Simulation& simulation, StepData& step, std::size_t island) {
+    ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t contact : contacts_of(step, island))
+        *row++ = make_row(simulation, step, step.contacts[contact], step.impulses[contact]);
+}
+
+void keep_impulses(StepData& step, std::size_t island) {
+    const ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t contact : contacts_of(step, island)) {
+        ContactImpulse& impulse = step.impulses[contact];
+        impulse.normal = row->normal_impulse;
+        impulse.tangent = (row++)->tangent_impulse;
+    }
+}
+
+}  // namespace
+
+void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.islands.is_coloured(island))
+        return solve_coloured_island(simulation, step, island, OneThread{});
+    make_rows(simulation, step, island);
+    step.residual[island] = simulation.needs.turning
+                                ? solve_rows<true>(simulation, step, rows_of(step, island))
+                                : solve_rows<false>(simulation, step, rows_of(step, island));
+}
+
+void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.islands.is_coloured(island))
+        return relax_coloured_island(simulation, step, island, OneThread{});
+    if (simulation.settings.solver == Solver::kSoft)
+        step.residual[island] =
+            simulation.needs.turning
+                ? iterate<true>(simulation, step, rows_of(step, island), Pass::kRelax)
+                : iterate<false>(simulation, step, rows_of(step, island), Pass::kRelax);
+    keep_impulses(step, island);
+}
+
+}  // namespace tesserae

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// Solves the contacts of one island by sequential impulses, accumulated and clamped, warm
+/// started, in the order that Islands gives: changes the velocities of its movable bodies. Touches
+/// nothing of another island. A coloured one is solved by solve_coloured_island(). Source: E.
+/// Catto, "Iterative dynamics with temporal coherence", 2005; friction is a block of three
+/// directions instead of separate ones.
+void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
+
+/// Once the island's bodies have moved by the velocities that solve_island() gave them: with
+/// Solver::kSoft takes back the part of the velocities that removed overlap (M. Macklin et al.,
+/// "Small steps in physics simulation", 2019; E. Catto, "Solver2D", 2024). Leaves the island's
+/// impulses in step.impulses.
+void relax_island(const Simulation& simulation, StepData& step, std::size_t island);
+
+}  // namespace tesserae

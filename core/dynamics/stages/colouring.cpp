@@ -1,0 +1,179 @@
+#include "core/dynamics/stages/colouring.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+namespace tesserae {
+namespace {
+
+/// A bit of a word each; what is left over is solved one by one.
+constexpr int kColours = 64;
+
+/// Within a colour the pairs of round bodies come first, then those of 8, 7, ..., 1 points, so that
+/// the lanes of a batch have about as many.
+constexpr std::size_t kKinds = 1 + kManifoldPoints;
+
+bool is_round(const TypeProperties& type) {
+    return !type.movable || (type.arm == 0 && type.isotropic);
+}
+
+/// How many contacts from this one on have its bodies and its normal.
+std::uint32_t run_length(std::span<const Contact> contacts) {
+    const Contact& first = contacts[0];
+    std::uint32_t length = 1;
+    while (length < std::min(contacts.size(), kManifoldPoints) && contacts[length].a == first.a &&
+           contacts[length].b == first.b && contacts[length].normal == first.normal)
+        ++length;
+    return length;
+}
+
+}  // namespace
+
+bool fit_floats(std::span<const TypeProperties> types) {
+    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+    for (const TypeProperties& type : types) {
+        if (!type.movable) continue;
+        if (!(type.radius > 1e-9 && type.radius < 1e9)) return false;
+        const int exponent = std::ilogb(type.mass);
+        least = std::min(least, exponent), most = std::max(most, exponent);
+    }
+    return most < least || most - least <= 60;
+}
+
+void Colouring::begin(const Simulation& simulation, StepData& step) {
+    ColouredIslands& coloured = step.coloured;
+    coloured.friction = simulation.needs.friction;
+    coloured.turns_unevenly = simulation.needs.uneven_inertia;
+    coloured.first_body.assign(1, 1);
+    coloured.first_colour.assign(1, 0);
+    coloured.mass_unit.clear();
+    coloured.bodies.assign(1, BodyId{0});  // stands for those that contacts do not move
+    coloured.colours.clear();
+    coloured.round.clear();
+    coloured.general.clear();
+    coloured.general_rows = 0;
+    place_.clear();
+    used_.clear();
+}
+
+void Colouring::add(const Simulation& simulation, StepData& step, std::size_t island) {
+    ColouredIslands& coloured = step.coloured;
+    place_.resize(simulation.bodies.size(), 0);
+    find_pairs(simulation, step, island);
+    sort_pairs();
+
+    std::uint32_t one_row_each = 0;
+    for (std::size_t colour = 0; colour <= kColours; ++colour) {
+        const std::uint32_t* const start = &start_[colour * kKinds];
+        if (start[0] == start[kKinds] && colour < kColours) continue;
+        const BatchRange round = add_batches({start[0], start[1]}, one_row_each, coloured.round);
+        const BatchRange general =
+            add_batches({start[1], start[kKinds]}, coloured.general_rows, coloured.general);
+        coloured.colours.push_back({round, general});
+    }
+    coloured.first_colour.push_back(static_cast<std::uint32_t>(coloured.colours.size()));
+
+    // The middle of the masses' range, as its logarithm.
+    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+    for (std::size_t i = coloured.first_body.back(); i < coloured.bodies.size(); ++i) {
+        const int exponent = std::ilogb(simulation.type_of(coloured.bodies[i]).mass);
+        least = std::min(least, exponent), most = std::max(most, exponent);
+    }
+    coloured.mass_unit.push_back(std::ldexp(1.0, (least + most) / 2));
+    coloured.first_body.push_back(static_cast<std::uint32_t>(coloured.bodies.size()));
+}
+
+void Colouring::end(const Simulation& simulation, StepData& step) {
+    ColouredIslands& coloured = step.coloured;
+    coloured.changes.resize(coloured.bodies.size());
+    if (coloured.turns_unevenly) coloured.inertias.resize(coloured.bodies.size());
+    if (simulation.settings.solver == Solver::kSoft)
+        coloured.angular_velocity.resize(coloured.bodies.size());
+    coloured.round_rows.resize(coloured.round.size());
+    coloured.frames.resize(coloured.general.size());
+    coloured.rows.resize(coloured.general_rows);
+    if (!coloured.friction) return;
+    coloured.round_friction.resize(coloured.round.size());
+    coloured.general_friction.resize(coloured.general_rows);
+}
+
+std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, BodyId id) {
+    if (!simulation.type_of(id).movable) return 0;
+    std::uint32_t& place = place_[id];
+    if (place == 0) {
+        place = static_cast<std::uint32_t>(step.coloured.bodies.size());
+        step.coloured.bodies.push_back(id);
+    }
+    return place;
+}
+
+void Colouring::find_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
+    pairs_.clear();
+    start_.assign((kColours + 1) * kKinds + 1, 0);
+    const Range places = step.islands.places(island);
+    const std::span<const Contact> all(step.contacts);
+    for (std::size_t i = places.begin; i < places.end;) {
+        const std::uint32_t contact = step.islands.contacts[i];
+        const Contact& c = all[contact];
+        Pair pair;
+        pair.contact = contact;
+        pair.a = place_of(simulation, step, c.a);
+        pair.b = place_of(simulation, step, c.b);
+        const std::uint32_t points = run_length(all.subspan(contact));
+        const bool round =
+            points == 1 && is_round(simulation.type_of(c.a)) && is_round(simulation.type_of(c.b));
+        pair.points = static_cast<std::uint8_t>(points);
+        used_.resize(step.coloured.bodies.size(), 0);
+        const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
+        pair.bucket = static_cast<std::uint16_t>(colour_of(pair) * kKinds + kind);
+        ++start_[pair.bucket];
+        pairs_.push_back(pair);
+        i += points;
+    }
+}
+
+/// The first that none of its movable bodies has yet; kColours if all are taken.
+int Colouring::colour_of(const Pair& pair) {
+    // The first place is all immovable bodies': it takes no colour.
+    std::uint64_t &a = used_[pair.a], &b = used_[pair.b];
+    const std::uint64_t taken = (pair.a > 0 ? a : 0) | (pair.b > 0 ? b : 0);
+    const int colour = std::countr_one(taken);
+    if (colour == kColours) return colour;
+    a |= std::uint64_t{1} << colour;
+    b |= std::uint64_t{1} << colour;
+    return colour;
+}
+
+/// Counting sort by bucket, which keeps the order within each.
+void Colouring::sort_pairs() {
+    std::exclusive_scan(start_.begin(), start_.end(), start_.begin(), 0u);
+    sorted_.resize(pairs_.size());
+    for (const Pair& pair : pairs_) sorted_[start_[pair.bucket]++] = pair;
+    std::shift_right(start_.begin(), start_.end(), 1);
+    start_.front() = 0;
+}
+
+BatchRange Colouring::add_batches(Range pairs, std::uint32_t& rows,
+                                  std::vector<Batch>& batches) const {
+    BatchRange range;
+    range.begin = static_cast<std::uint32_t>(batches.size());
+    for (std::size_t begin = pairs.begin; begin < pairs.end; begin += kLanes) {
+        Batch& batch = batches.emplace_back();
+        batch.row = rows;
+        for (std::size_t k = 0; k < std::min(kLanes, pairs.end - begin); ++k) {
+            const Pair& pair = sorted_[begin + k];
+            batch.a[k] = pair.a, batch.b[k] = pair.b;
+            batch.contact[k] = pair.contact, batch.points[k] = pair.points;
+            batch.rows = std::max<std::uint32_t>(batch.rows, pair.points);
+        }
+        rows += batch.rows;
+    }
+    range.end = static_cast<std::uint32_t>(batches.size());
+    return range;
+}
+
+}  // namespace tesserae

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// Whether masses and sizes leave room in a float for their products: masses within a factor of
+/// 2^60, bounding radii between 1e-9 and 1e9 m. Else islands of any size are solved in double.
+bool fit_floats(std::span<const TypeProperties> types);
+
+/// Colours the pairs of bodies of large islands and makes batches of them: no two pairs of a colour
+/// share a movable body, so that any number of threads may solve them at once and get the same
+/// bits.
+class Colouring {
+  public:
+    /// Empties step.coloured.
+    void begin(const Simulation& simulation, StepData& step);
+    /// Adds the island, the next one that is coloured.
+    void add(const Simulation& simulation, StepData& step, std::size_t island);
+    /// Sizes the rows.
+    void end(const Simulation& simulation, StepData& step);
+
+  private:
+    /// The contacts of two bodies, which follow each other in StepData::contacts.
+    struct Pair {
+        std::uint32_t contact;  ///< the first
+        std::uint32_t a, b;     ///< places in ColouredIslands::bodies
+        std::uint16_t bucket;
+        std::uint8_t points;
+    };
+    void find_pairs(const Simulation& simulation, StepData& step, std::size_t island);
+    std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
+    int colour_of(const Pair& pair);
+    void sort_pairs();
+    BatchRange add_batches(Range pairs, std::uint32_t& rows, std::vector<Batch>& batches) const;
+
+    std::vector<std::uint32_t> place_;  ///< of every body in ColouredIslands::bodies, or 0
+    std::vector<std::uint64_t> used_;   ///< colours of each of these so far, a bit each
+    std::vector<Pair> pairs_, sorted_;  ///< of the island at hand
+    std::vector<std::uint32_t> start_;  ///< of each bucket in sorted_, and an end
+};
+
+}  // namespace tesserae

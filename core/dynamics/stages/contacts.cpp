@@ -1,0 +1,47 @@
+#include "core/dynamics/stages/contacts.hpp"
+
+#include <algorithm>
+
+#include "core/contact/find_contacts.hpp"
+
+namespace tesserae {
+
+void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
+                   std::vector<Contact>& list) {
+    const Bodies& bodies = simulation.bodies;
+    const double h = step.h, gravity = simulation.settings.gravity.norm();
+    for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
+        const auto [a, b] = step.pairs[i];
+        const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+        double speed = (step.velocity[b] - step.velocity[a]).norm();
+        if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
+        if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
+        if (type_a.falls != type_b.falls) speed += h * gravity;
+        const double margin = std::min(type_a.slop, type_b.slop) + h * speed;
+        find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    }
+}
+
+void begin_contacts(StepData& step) {
+    step.impulses.resize(step.contacts.size());
+    step.residual.clear();
+}
+
+void recall_impulses(const Simulation& simulation, StepData& step, Range contacts) {
+    if (contacts.begin == contacts.end) return;
+    const std::vector<ContactImpulse>& last = last_impulses(simulation, step);
+    auto old = std::lower_bound(
+        last.begin(), last.end(), step.contacts[contacts.begin],
+        [](const ContactImpulse& i, const Contact& c) { return key_of(i) < key_of(c); });
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
+        const Contact& c = step.contacts[i];
+        while (old != last.end() && key_of(*old) < key_of(c)) ++old;
+        if (old != last.end() && key_of(*old) == key_of(c))
+            step.impulses[i] = *old;
+        else
+            step.impulses[i] = {c.a, c.b, c.feature, 0, Vec4::Zero()};
+    }
+}
+
+}  // namespace tesserae

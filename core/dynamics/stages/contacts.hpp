@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// Narrow phase of step.pairs in the range: appends their contacts to a list. Reported are points
+/// that can close within one sub-step at the present relative velocity, and those that are within
+/// the allowed overlap of touching.
+void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
+                   std::vector<Contact>& list);
+
+/// Sizes the sub-step's arrays of contacts, once these are known.
+void begin_contacts(StepData& step);
+
+/// step.impulses of the contacts in the range: what the last sub-step left for the same
+/// (a, b, feature), else zero.
+void recall_impulses(const Simulation& simulation, StepData& step, Range contacts);
+
+}  // namespace tesserae

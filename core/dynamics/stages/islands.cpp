@@ -1,0 +1,80 @@
+#include "core/dynamics/stages/islands.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "core/error.hpp"
+
+namespace tesserae {
+
+BodyId IslandBuilder::root_of(BodyId id) {
+    while (parent_[id] != id) id = parent_[id] = parent_[parent_[id]];
+    return id;
+}
+
+void IslandBuilder::build(const Simulation& simulation, StepData& step) {
+    sort_by_island(simulation, step);
+    Islands& islands = step.islands;
+    step.residual.resize(islands.size());
+    islands.coloured.assign(islands.size(), Islands::kNotColoured);
+    islands.first_row.assign(islands.size(), 0);
+    colouring_.begin(simulation, step);
+    const bool fits = fit_floats(simulation.types);
+    std::uint32_t coloured = 0, rows = 0;
+    for (std::size_t island = 0; island < islands.size(); ++island) {
+        const Range places = islands.places(island);
+        const auto size = static_cast<std::uint32_t>(places.end - places.begin);
+        if (fits && size >= coloured_from_) {
+            colouring_.add(simulation, step, island);
+            islands.coloured[island] = coloured++;
+        } else {
+            islands.first_row[island] = rows;
+            rows += size;
+        }
+    }
+    colouring_.end(simulation, step);
+    step.rows.resize(rows);
+}
+
+void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
+    const std::vector<Contact>& contacts = step.contacts;
+    TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
+    const auto movable = [&](BodyId id) { return simulation.type_of(id).movable; };
+
+    // Join, the lower root above the higher one. Contacts are large: only here are they read.
+    parent_.resize(simulation.bodies.size());
+    std::iota(parent_.begin(), parent_.end(), BodyId{0});
+    member_.resize(contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Contact& c = contacts[i];
+        member_[i] = movable(c.a) ? c.a : c.b;
+        const bool again = i > 0 && c.a == contacts[i - 1].a && c.b == contacts[i - 1].b;
+        if (again || !movable(c.a) || !movable(c.b)) continue;
+        const BodyId p = root_of(c.a), q = root_of(c.b);
+        parent_[std::max(p, q)] = std::min(p, q);
+    }
+    for (BodyId& member : member_) member = root_of(member);
+
+    // Number the roots that have contacts, ascending.
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    number_.assign(parent_.size(), kNone);
+    for (const BodyId root : member_) number_[root] = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t& number : number_)
+        if (number != kNone) number = count++;
+
+    // Counting sort of the contacts by island; it keeps their order within each.
+    Islands& islands = step.islands;
+    islands.first.assign(count + 1, 0);
+    for (const BodyId root : member_) ++islands.first[number_[root] + 1];
+    std::partial_sum(islands.first.begin(), islands.first.end(), islands.first.begin());
+    islands.contacts.resize(contacts.size());
+    for (std::uint32_t i = 0; i < contacts.size(); ++i)
+        islands.contacts[islands.first[number_[member_[i]]]++] = i;
+    // Filling moved each start to its island's end: shift them back.
+    std::shift_right(islands.first.begin(), islands.first.end(), 1);
+    islands.first.front() = 0;
+}
+
+}  // namespace tesserae

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// Whether what two bounded bodies can reach has a point in common.
+inline bool overlap(const Bounds& a, const Bounds& b) {
+    const double reach = a.radius + b.radius;
+    return (a.centre - b.centre).squaredNorm() <= reach * reach;
+}
+
+/// Whether a bounded body can reach a body without bounds, by the distance of its centre.
+bool reaches(const Bounds& bounded, const Shape& unbounded);
+
+/// Whether the narrow phase has to look at bodies a < b: contacts can move at least one, at least
+/// one is awake or driven, and where one can be within the step the other can be too. Every way of
+/// finding pairs decides by this.
+bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+
+/// step.pairs by testing every two bodies: the reference for faster ways.
+void find_pairs(const Simulation& simulation, StepData& step);
+
+}  // namespace tesserae

@@ -1,0 +1,41 @@
+#include "core/dynamics/stages/schedule.hpp"
+
+#include "core/dynamics/solver/solver.hpp"
+#include "core/dynamics/stages/pairs.hpp"
+
+namespace tesserae {
+
+const char* name_of(Stage stage) {
+    constexpr const char* kNames[] = {"advance_first_half",   "find_pairs",    "find_contacts",
+                                      "integrate_velocities", "build_islands", "solve_islands",
+                                      "advance_second_half",  "relax_islands", "finish_step"};
+    return kNames[static_cast<std::size_t>(stage)];
+}
+
+void Schedule::for_each_range(std::size_t count, std::size_t, FunctionRef<void(Range)> work) {
+    work({0, count});
+}
+
+bool Schedule::any_range(std::size_t count, std::size_t, FunctionRef<bool(Range)> test) {
+    return test({0, count});
+}
+
+void Schedule::find_pairs(const Simulation& simulation, StepData& step) {
+    tesserae::find_pairs(simulation, step);
+}
+
+void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
+    tesserae::find_pairs(simulation, step);
+}
+
+void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        solve_island(simulation, step, island);
+}
+
+void Schedule::relax_islands(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        relax_island(simulation, step, island);
+}
+
+}  // namespace tesserae

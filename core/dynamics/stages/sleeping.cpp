@@ -1,0 +1,101 @@
+#include "core/dynamics/stages/sleeping.hpp"
+
+#include <algorithm>
+
+#include "core/dynamics/stages/motion.hpp"
+
+namespace tesserae {
+namespace {
+
+bool is_still(const Simulation& simulation, const StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    const double speed = step.velocity[id].norm() + type.radius * norm(step.angular_velocity[id]);
+    return speed < kStill / kSlop * type.slop;
+}
+
+/// step.lowest_of_island: its lowest movable body if it may fall asleep, else kAwake.
+void find_islands_at_rest(const Simulation& simulation, StepData& step) {
+    std::vector<BodyId>& lowest = step.lowest_of_island;
+    lowest.assign(step.islands.size(), kAwake);
+    for (std::size_t island = 0; island < lowest.size(); ++island) {
+        BodyId least = kAwake;
+        const auto rests = [&](BodyId id) {
+            if (is_driven(simulation, id)) return false;
+            if (!simulation.type_of(id).movable) return true;
+            least = std::min(least, id);
+            return simulation.memory.still[id] >= kTimeToSleep;
+        };
+        // Most islands that move show it soon.
+        const std::uint32_t* const first = step.islands.contacts.data();
+        const Range places = step.islands.places(island);
+        if (std::all_of(first + places.begin, first + places.end, [&](std::uint32_t place) {
+                const Contact& contact = step.contacts[place];
+                return rests(contact.a) && rests(contact.b);
+            }))
+            lowest[island] = least;
+    }
+}
+
+}  // namespace
+
+bool touches_sleeper(const StepData& step, Range contacts) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
+        if (is_asleep(step, step.contacts[i].a) || is_asleep(step, step.contacts[i].b)) return true;
+    return false;
+}
+
+bool wake_touched(const Simulation& simulation, StepData& step) {
+    if (step.asleep.empty()) return false;
+    std::vector<BodyId> woken;
+    for (const Contact& contact : step.contacts)
+        for (const BodyId id : {contact.a, contact.b})
+            if (is_asleep(step, id)) woken.push_back(step.asleep[id]);
+    if (woken.empty()) return false;
+    std::sort(woken.begin(), woken.end());
+    for (BodyId id = 0; id < step.asleep.size(); ++id) {
+        BodyId& island = step.asleep[id];
+        if (island == kAwake || !std::binary_search(woken.begin(), woken.end(), island)) continue;
+        island = kAwake;
+        set_inverse_inertia(simulation, step, id);
+    }
+    return true;
+}
+
+void fall_asleep(Simulation& simulation, StepData& step) {
+    const std::size_t count = simulation.bodies.size();
+    std::vector<double>& still = simulation.memory.still;
+    const std::vector<BodyId>& before = simulation.memory.asleep;
+    still.resize(count, 0);
+    for (BodyId id = 0; id < count; ++id) {
+        if (is_asleep(step, id)) continue;
+        const bool woke = !before.empty() && before[id] != kAwake;
+        still[id] = is_still(simulation, step, id) && !woke ? still[id] + step.dt : 0;
+    }
+
+    // A body without contacts is an island of its own.
+    find_islands_at_rest(simulation, step);
+    const std::vector<BodyId>& lowest = step.lowest_of_island;
+    std::vector<BodyId>& next = step.next_asleep;
+    next.resize(count);
+    for (BodyId id = 0; id < count; ++id) {
+        const bool rests = simulation.type_of(id).movable && !is_driven(simulation, id) &&
+                           still[id] >= kTimeToSleep;
+        next[id] = rests ? id : kAwake;
+    }
+    for (std::size_t island = 0; island < lowest.size(); ++island)
+        for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
+             ++i) {
+            const Contact& contact = step.contacts[step.islands.contacts[i]];
+            for (const BodyId id : {contact.a, contact.b})
+                if (simulation.type_of(id).movable) next[id] = lowest[island];
+        }
+
+    for (BodyId id = 0; id < count; ++id) {
+        if (is_asleep(step, id) || next[id] == kAwake) continue;
+        step.asleep[id] = next[id];
+        step.velocity[id].setZero();
+        if (simulation.needs.turning) step.angular_velocity[id] = {};
+    }
+}
+
+}  // namespace tesserae

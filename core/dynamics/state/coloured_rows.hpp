@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/manifold.hpp"
+#include "core/dynamics/state/bodies.hpp"
+
+namespace tesserae {
+
+/// Floats that one instruction works on.
+constexpr std::size_t kLanes = 8;
+
+struct alignas(32) Eight {
+    std::array<float, kLanes> lane = {};
+};
+
+// What the coloured solver keeps of a coloured island: velocities as changes since the sub-step's
+// start, impulses, and rows of eight contacts, in float. Impulses and masses are in units of
+// ColouredIslands::mass_unit, so that neither leaves float's range.
+
+/// One body's record. The first one stands for all bodies that contacts do not move, all zero.
+struct alignas(64) BodyChange {
+    std::array<float, 4> velocity = {};      ///< [m/s]
+    std::array<float, 4> first_planes = {};  ///< angular velocity: xy xz xw yz [rad/s]
+    /// yw, zw, inverse mass [1/mass unit] and, if isotropic, inverse inertia.
+    std::array<float, 4> rest = {};
+};
+
+/// World inverse inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
+struct alignas(32) BodyInertia {
+    std::array<std::array<float, 4>, 6> entry = {};  ///< three unused
+};
+
+/// Eight pairs of bodies that share no movable body; lanes beyond the last pair are all zero.
+struct Batch {
+    std::array<std::uint32_t, kLanes> a = {}, b = {};  ///< places in ColouredIslands::bodies
+    std::array<std::uint32_t, kLanes> contact = {};    ///< each pair's first
+    std::array<std::uint8_t, kLanes> points = {};      ///< each pair's contacts
+    std::uint32_t row = 0;                             ///< first of its rows
+    std::uint32_t rows = 0;                            ///< the most points of a lane
+};
+
+/// The normal part of a row; see NormalPass. Targets are less the normal velocity of the start.
+struct NormalRow {
+    Eight mass, target;
+    Eight impulse;
+    // Of Solver::kSoft alone.
+    Eight keep, relax_target;
+};
+
+/// A contact of two round bodies (or of one and a body that contacts do not move): the normal goes
+/// through both centres, so that the normal impulse turns nothing and the response is the same
+/// along every tangent.
+struct RoundRow {
+    std::array<Eight, 4> normal;
+    NormalRow along;
+};
+struct RoundFriction {
+    Eight arm_a, arm_b;  ///< from the centres to the contact point, along n and against it [m]
+    Eight friction, mass;
+    std::array<Eight, 4> slip;     ///< of the start [m/s]
+    std::array<Eight, 4> impulse;  ///< on b
+};
+
+/// Of all points of each pair: the frame in which their rows are. The reflection v - (h.v) h, with
+/// |h|^2 = 2, takes the normal to g w, where g = -1 if h_w >= 0, else 1, and the tangents to x, y,
+/// z.
+struct PairFrame {
+    std::array<Eight, 4> h;
+    Eight friction;
+};
+/// A contact of any two bodies.
+struct GeneralRow {
+    std::array<Eight, 4> r_a, r_b;  ///< from the centres to the contact point [m]
+    NormalRow along;
+};
+struct GeneralFriction {
+    std::array<Eight, 3> normal_response;  ///< change of the slip by a unit normal impulse
+    std::array<Eight, 6> mass;             ///< xx xy xz yy yz zz
+    Eight slide_mass;                      ///< below the inverse of the largest response
+    std::array<Eight, 3> slip;             ///< of the start [m/s]
+    std::array<Eight, 3> impulse;          ///< on b
+};
+
+/// Batches begin <= i < end.
+struct BatchRange {
+    std::uint32_t begin, end;
+};
+struct ColourBatches {
+    BatchRange round, general;
+};
+
+/// The coloured islands of a sub-step, one behind the other: their bodies, their batches in order
+/// of colours, and a row for each point of a batch.
+struct ColouredIslands {
+    bool friction = false;                  ///< of any body type; else there are no such rows
+    bool turns_unevenly = false;            ///< any body is not isotropic
+    std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
+    std::vector<std::uint32_t>
+        first_colour;               ///< likewise; an island's last one is what is left over
+    std::vector<double> mass_unit;  ///< of every coloured island, a power of two [kg]
+    std::vector<BodyId> bodies;
+    std::vector<ColourBatches> colours;
+    std::vector<Batch> round, general;
+    std::uint32_t general_rows = 0;
+
+    std::vector<BodyChange> changes;                ///< of `bodies`
+    std::vector<BodyInertia> inertias;              ///< of `bodies`, if any turns unevenly
+    std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
+    std::vector<RoundRow> round_rows;               ///< of `round`
+    std::vector<RoundFriction> round_friction;      ///< of `round`
+    std::vector<PairFrame> frames;                  ///< of `general`
+    std::vector<GeneralRow> rows;                   ///< of `general`, see Batch::row
+    std::vector<GeneralFriction> general_friction;  ///< likewise
+};
+
+}  // namespace tesserae

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/dynamics/state/bodies.hpp"
+
+namespace tesserae {
+
+/// What a contact point's rows ended with: where the next step's solver starts.
+struct ContactImpulse {
+    BodyId a = 0, b = 0;          ///< a < b
+    std::uint32_t feature = 0;    ///< which point of the pair; stays the same while the features do
+    double normal = 0;            ///< [N s], >= 0
+    Vec4 tangent = Vec4::Zero();  ///< friction impulse on b, world [N s]
+};
+
+/// Everything beside the bodies' state that one step leaves to the next and that changes results.
+/// Saved with a trajectory so that a resumed run continues bit for bit.
+struct StepMemory {
+    std::vector<ContactImpulse> impulses;  ///< ascending (a, b, feature)
+    /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
+    /// in, or kAwake.
+    std::vector<BodyId> asleep;
+    std::vector<double> still;  ///< how long every body has hardly moved [s], or empty
+    double time = 0;            ///< of all steps so far [s]; changes no result, messages name it
+};
+constexpr BodyId kAwake = std::numeric_limits<BodyId>::max();
+
+/// What a step found, in the middle of its last sub-step. Contacts of bodies that sleep count, as
+/// they were when they fell asleep, but their overlap does not.
+struct StepReport {
+    std::uint64_t contacts = 0;   ///< contact points that touch or overlap
+    double penetration = 0;       ///< deepest overlap [m], >= 0
+    double mean_penetration = 0;  ///< overlap of those that touch or overlap, on average [m], >= 0
+    double residual = 0;  ///< largest change of a contact's normal velocity that the solver still
+                          ///< made in its last iteration [m/s]
+    std::uint64_t asleep = 0;  ///< bodies
+};
+
+}  // namespace tesserae

@@ -1,0 +1,30 @@
+#include "core/dynamics/state/needs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tesserae {
+namespace {
+
+/// A rotor that is no rotation counts, so that the step that checks what turns finds it.
+bool turns(const Rotor& rotor, const Bivector& omega) {
+    return !(omega == Bivector{}) ||
+           !std::isfinite(rotor.s * rotor.s + dot(rotor.b, rotor.b) + rotor.p * rotor.p);
+}
+
+}  // namespace
+
+Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
+    const auto any = [&](auto&& has) { return std::any_of(types.begin(), types.end(), has); };
+    Needs needs;
+    // A pair's friction is the geometric mean, its restitution the larger one.
+    needs.friction = any([](const auto& type) { return type.movable && type.friction > 0; });
+    needs.restitution = any([](const auto& type) { return type.restitution > 0; });
+    needs.uneven_inertia = any([](const auto& type) { return !type.isotropic; });
+    needs.turning = any([](const auto& type) { return !(type.inverse_inertia == Bivector{}); });
+    for (BodyId id = 0; id < bodies.size() && !needs.turning; ++id)
+        needs.turning = turns(bodies.rotor[id], bodies.angular_velocity[id]);
+    return needs;
+}
+
+}  // namespace tesserae

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+
+#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/state/type_properties.hpp"
+
+namespace tesserae {
+
+/// What the steps of a scene need, decided once for all of them. What is false is left out of every
+/// step, which then has the same result (Needs.WhatIsLeftOutWouldChangeNothing).
+struct Needs {
+    bool friction = true;        ///< tangent rows: a movable body has friction
+    bool restitution = true;     ///< rebounds: a body has restitution
+    bool uneven_inertia = true;  ///< 6x6 inertia: some movable body's depends on the direction
+    bool turning = true;         ///< rotors and angular velocities: some body turns, or contacts
+                                 ///< can turn it
+};
+
+Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types);
+
+}  // namespace tesserae

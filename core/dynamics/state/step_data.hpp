@@ -1,0 +1,175 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "core/contact/contact.hpp"
+#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/state/coloured_rows.hpp"
+#include "core/dynamics/state/memory.hpp"
+#include "core/dynamics/state/needs.hpp"
+#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/state/type_properties.hpp"
+
+namespace tesserae {
+
+/// Items begin <= i < end of a list: what one call of a stage works on. The items of a range do
+/// not depend on each other, so that any split gives the same bits.
+struct Range {
+    std::size_t begin, end;
+};
+
+/// The ball that holds all that a body can reach in the rest of the step.
+struct Bounds {
+    Vec4 centre =
+        Vec4::Zero();   ///< where the body is when they are made, world [m]; 0 if unbounded
+    double radius = 0;  ///< [m]; infinite if unbounded
+};
+
+/// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
+/// rows of zeros make a column two whole vector registers.
+using BivectorMap = Eigen::Matrix<double, 8, 6>;
+
+/// Two bodies that may touch in the step, a < b.
+struct BodyPair {
+    BodyId a, b;
+
+    friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
+};
+
+/// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
+/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved.
+///
+/// They are in ascending order of (a, b, feature), and the contacts of small islands are solved in
+/// it, one by one. Large ones are coloured and solved in order of the batches that ColouredIslands
+/// has of them.
+struct Islands {
+    static constexpr std::uint32_t kNotColoured = std::numeric_limits<std::uint32_t>::max();
+
+    std::vector<std::uint32_t> first = {0};
+    std::vector<std::uint32_t> contacts;   ///< places in the list of contacts
+    std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
+                                           ///< kNotColoured
+    std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
+
+    std::size_t size() const { return first.size() - 1; }
+    Range places(std::size_t island) const { return {first[island], first[island + 1]}; }
+    bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
+};
+
+/// Of the contacts of one piece of the list, for the step's report.
+struct ContactSums {
+    std::uint64_t contacts = 0;
+    double penetration = 0, sum = 0;  ///< deepest overlap and all overlaps [m]
+};
+
+/// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
+/// p <- max(0, keep p + mass (target - v)).
+struct NormalPass {
+    double mass = 0;    ///< [kg]; the inverse of the response if rigid, less if soft
+    double keep = 1;    ///< 1 if rigid; a soft contact yields, and p with it
+    double target = 0;  ///< [m/s]
+};
+
+/// A contact as the solver sees it. Impulses act on b, their opposites on a.
+struct ContactRow {
+    Vec4 normal;                ///< unit, from a to b
+    Vec4 r_a, r_b;              ///< from the centres to the contact point [m]
+    Vec4 normal_response;       ///< change of the relative velocity by a unit impulse on n [1/kg]
+    Mat4 tangent_mass;          ///< inverse of the response in the three tangent directions [kg]
+    double slide_mass = 0;      ///< below the inverse of the largest of these responses [kg]
+    Vec4 tangent_impulse;       ///< [N s], orthogonal to the normal
+    NormalPass solve;           ///< overlap is removed
+    NormalPass relax;           ///< the velocity that removed it is taken back
+    double normal_impulse = 0;  ///< [N s], >= 0
+    double friction = 0;        ///< coefficient
+    BodyId a = 0, b = 0;
+};
+
+/// The bodies as they were after the last finished step, and what is worked out from them once.
+struct Simulation {
+    Bodies bodies;
+    StepMemory memory;
+    PhysicsSettings settings;
+    std::vector<TypeProperties> types;  ///< by body type
+    Needs needs;
+
+    const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
+};
+
+/// What the stages of one step hand on. Nothing in it survives the step, its memory does; where
+/// nothing turns the first step's rotors and angular velocities stay, which are all later ones'.
+struct StepData {
+    double dt = 0;    ///< [s]
+    double h = 0;     ///< length of a sub-step [s]
+    int substep = 0;  ///< 0 to settings.substeps - 1
+
+    std::vector<Vec4> position;  ///< of every body, on its way from the last state to the next
+    std::vector<Rotor> rotor;
+    std::vector<Vec4> velocity;
+    std::vector<Bivector> angular_velocity;
+
+    /// World, in the middle of the sub-step, of the bodies that are not isotropic and awake.
+    std::vector<BivectorMap> inverse_inertia;
+
+    std::vector<Bounds> bounds;     ///< of every body
+    std::vector<BodyPair> pairs;    ///< ascending
+    std::vector<Contact> contacts;  ///< ascending (a, b, feature)
+    Islands islands;
+    std::vector<ContactRow> rows;          ///< of islands that are not coloured
+    ColouredIslands coloured;              ///< of the others
+    std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
+    std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
+    std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
+    std::vector<double> residual;          ///< of every island [m/s]
+    std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
+    std::vector<ContactSums> sums;         ///< of every piece of kReportPiece contacts
+
+    /// Made and used within one stage; here so that their memory is kept.
+    std::vector<ContactImpulse> merged_impulses;
+    std::vector<BodyId> lowest_of_island, next_asleep;
+};
+
+/// Contacts and their impulses are in ascending order of this.
+template <class ContactOrImpulse>
+auto key_of(const ContactOrImpulse& c) {
+    return std::tuple(c.a, c.b, c.feature);
+}
+
+/// What the sub-step before this one left.
+inline const std::vector<ContactImpulse>& last_impulses(const Simulation& simulation,
+                                                        const StepData& step) {
+    return step.substep == 0 ? simulation.memory.impulses : step.recalled;
+}
+
+/// What an angular impulse [N m s, world] does to the angular velocity of a body in this sub-step:
+/// that of its type and rotor.
+inline Bivector angular_response(const Simulation& simulation, const StepData& step, BodyId id,
+                                 const Bivector& impulse) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (type.isotropic) return type.inverse_inertia.xy * impulse;
+    const BivectorMap& map = step.inverse_inertia[id];
+    Eigen::Matrix<double, 8, 1> sum = impulse.xy * map.col(0);
+    sum += impulse.xz * map.col(1);
+    sum += impulse.xw * map.col(2);
+    sum += impulse.yz * map.col(3);
+    sum += impulse.yw * map.col(4);
+    sum += impulse.zw * map.col(5);
+    return {sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]};
+}
+
+inline bool is_asleep(const StepData& step, BodyId id) {
+    return !step.asleep.empty() && step.asleep[id] != kAwake;
+}
+
+/// Moves at a velocity of its own, which contacts do not change.
+inline bool is_driven(const Simulation& simulation, BodyId id) {
+    const Bodies& bodies = simulation.bodies;
+    const BodyType& type = bodies.type_of(id);
+    return (type.fixed_position && bodies.velocity[id] != Vec4::Zero()) ||
+           (type.fixed_rotation && !(bodies.angular_velocity[id] == Bivector{}));
+}
+
+}  // namespace tesserae

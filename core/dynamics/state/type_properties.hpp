@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "core/dynamics/state/bodies.hpp"
+
+namespace tesserae {
+
+/// What the step needs to know of a body type, worked out once.
+struct TypeProperties {
+    double mass = 0;           ///< [kg]; 0 if unbounded
+    double inverse_mass = 0;   ///< [1/kg]; 0 if the position is fixed
+    Bivector inertia;          ///< body frame, diagonal: I_ij = J_i + J_j [kg m^2]
+    Bivector inverse_inertia;  ///< the inverse of each, as contacts see it; 0 if the rotation is
+                               ///< fixed, and of a hypersphere without friction, which no contact
+                               ///< turns: normals go through its centre
+    bool isotropic = true;     ///< all six inverses are equal
+    bool bounded = false;
+    bool movable = false;  ///< contacts can change its motion
+    bool falls = false;    ///< gravity acts on it
+    double radius = 0;     ///< of the bounding sphere about the centre [m]
+    double arm = 0;        ///< surface speed towards another body per angular speed, at most [m];
+                           ///< 0 for a hypersphere, whose turning moves no surface
+    double slop = 0;       ///< allowed overlap [m]; infinite if unbounded
+    double friction = 0;
+    double restitution = 0;
+};
+
+/// Overlap that the solver leaves alone, as a part of the least half-size, usual 0.005: a resting
+/// contact then keeps touching. More shows as bodies that sink into each other; 0 lets resting
+/// contacts come and go.
+constexpr double kSlop = 0.005;
+
+/// @return one entry for each of bodies.types
+std::vector<TypeProperties> type_properties(const Bodies& bodies);
+
+/// What an angular impulse [N m s, world] does to the angular velocity of a body so turned.
+Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse);
+
+/// Angular momentum about the centre [kg m^2/s, world]: with J the second moments in the world
+/// frame it is J omega + omega J.
+Bivector angular_momentum(const TypeProperties& type, const Rotor& rotor, const Bivector& omega);
+
+}  // namespace tesserae

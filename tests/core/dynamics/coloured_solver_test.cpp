@@ -1,0 +1,280 @@
+#include "core/dynamics/solver/coloured_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "core/dynamics/stages/motion.hpp"
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+#include "tests/core/dynamics/observed_world.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+using Generator = std::mt19937_64;
+
+Vec4 random_vector(Generator& random, double half_side) {
+    std::uniform_real_distribution<> along(-half_side, half_side);
+    Vec4 v;
+    for (int i = 0; i < 4; ++i) v[i] = along(random);
+    return v;
+}
+
+Bivector random_bivector(Generator& random) {
+    return wedge(random_vector(random, 1), random_vector(random, 1)) +
+           wedge(random_vector(random, 1), random_vector(random, 1));
+}
+
+PhysicsSettings settings_of(Solver solver, int iterations) {
+    PhysicsSettings settings;
+    settings.solver = solver;
+    settings.iterations = iterations;
+    return settings;
+}
+
+/// A sub-step before its islands are solved.
+struct Unsolved {
+    Simulation simulation;
+    StepData step;
+};
+
+/// Bodies of all shapes that move at random and touch at random, one to eight points a pair, body 1
+/// all others: so many pairs that some are left over. Two bodies do not move, two only turn.
+Unsolved random_island(Solver solver, double friction, bool spheres_only) {
+    Generator random(3);
+    Bodies bodies;
+    constexpr BodyId kCount = 200;
+    for (BodyId id = 0; id < kCount; ++id) {
+        BodyType type = sphere_type(0.5, 1.0 + id % 5);
+        if (!spheres_only && id % 4 == 1) type = box_type({1, 0.5, 0.7, 0.9}, 2);
+        if (!spheres_only && id % 4 == 2) type = capsule_type(0.3, 1, 3);
+        if (id % 50 == 7) type.fixed_position = type.fixed_rotation = true;
+        if (id % 50 == 8) type.fixed_position = true;
+        type.friction = friction * (0.5 + 0.01 * id);
+        type.restitution = id % 3 == 0 ? 0.5 : 0;
+        add(bodies, type, random_vector(random, 3), random_vector(random, 1),
+            random_bivector(random), exp(random_bivector(random)));
+    }
+    Unsolved world{make_simulation(bodies, settings_of(solver, 5)), {}};
+    begin_step(world.simulation, world.step, kStep);
+    advance_first_half(world.simulation, world.step, {0, kCount});
+    for (BodyId a = 0; a < kCount; ++a)
+        for (BodyId b = a + 1; b < kCount; ++b) {
+            if (a != 1 && random() % 40 > 0) continue;
+            if (!bodies.is_movable(a) && !bodies.is_movable(b)) continue;
+            Contact contact;
+            contact.a = a, contact.b = b;
+            contact.normal = random_vector(random, 1).normalized();
+            const std::uint64_t points = spheres_only ? 1 : 1 + random() % 8;
+            for (std::uint32_t i = 0; i < points; ++i) {
+                contact.feature = i;
+                contact.separation = 1e-3 * random_vector(random, 1)[0] - 1e-3;
+                contact.point = world.step.position[a] + random_vector(random, 0.7);
+                world.step.contacts.push_back(contact);
+                world.step.impulses.push_back({a, b, i,
+                                               std::max(0.0, random_vector(random, 0.01)[0]),
+                                               random_vector(random, 0.01)});
+            }
+        }
+    IslandBuilder(1).build(world.simulation, world.step);
+    return world;
+}
+
+TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
+        for (const double friction : {0.0, 0.7})
+            for (const bool spheres_only : {false, true}) {
+                Unsolved one = random_island(solver, friction, spheres_only);
+                ASSERT_EQ(one.step.islands.size(), 1u);
+                const ColourBatches& left = one.step.coloured.colours.back();
+                const BatchRange& many = spheres_only ? left.round : left.general;
+                ASSERT_GT(many.end - many.begin, 4u);
+                EXPECT_EQ(one.step.coloured.round_friction.empty(), friction == 0);
+                EXPECT_EQ(one.step.coloured.inertias.empty(), spheres_only);
+                Unsolved eight = one;
+                const auto work = [](Unsolved& world, LaneCount lanes) {
+                    const Simulation& simulation = world.simulation;
+                    solve_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
+                    advance_second_half(simulation, world.step, {0, simulation.bodies.size()});
+                    relax_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
+                };
+                work(one, LaneCount::kOne);
+                work(eight, LaneCount::kEight);
+                EXPECT_TRUE(same_bits(one.step.velocity, eight.step.velocity));
+                EXPECT_TRUE(same_bits(one.step.angular_velocity, eight.step.angular_velocity));
+                EXPECT_EQ(one.step.residual, eight.step.residual);
+                EXPECT_GT(one.step.residual[0], 0);
+                double normal = 0, tangent = 0;
+                for (std::size_t i = 0; i < one.step.impulses.size(); ++i) {
+                    const ContactImpulse &p = one.step.impulses[i], &q = eight.step.impulses[i];
+                    ASSERT_EQ(p.normal, q.normal);
+                    ASSERT_EQ(p.tangent, q.tangent);
+                    normal += p.normal, tangent += p.tangent.norm();
+                }
+                EXPECT_GT(normal, 1) << "nothing was solved";
+                EXPECT_EQ(tangent > 0, friction > 0);
+                EXPECT_FALSE(same_bits(one.step.velocity, one.simulation.bodies.velocity));
+            }
+}
+
+/// The largest difference of the velocities of two worlds [m/s; rad/s].
+double difference(const StepData& p, const StepData& q) {
+    double largest = 0;
+    for (std::size_t i = 0; i < p.velocity.size(); ++i) {
+        largest = std::max(largest, (p.velocity[i] - q.velocity[i]).norm());
+        largest = std::max(largest, norm(p.angular_velocity[i] - q.angular_velocity[i]));
+    }
+    return largest;
+}
+
+/// Two bodies, of which one may be driven or only turn: the two solvers then do the same in the
+/// same order, in float and in double.
+struct OnePair {
+    BodyType a, b;
+    Vec4 b_position;
+};
+
+std::vector<OnePair> pairs_of_all_kinds() {
+    BodyType fixed_box = box_type({4, 1, 4, 4});
+    fixed_box.fixed_position = fixed_box.fixed_rotation = true;
+    BodyType turning_box = box_type({2, 1, 2, 2}, 5);
+    turning_box.fixed_position = true;
+    const BodyType plane = plane_type(Vec4::UnitY(), 0);
+    const BodyType box = box_type({1, 1.4, 1.2, 0.8}, 2), cube = box_type(Vec4::Ones(), 2);
+    const Vec4 up = Vec4::UnitY();
+    return {{plane, sphere_type(0.5, 2), 0.499 * up},
+            {sphere_type(0.4, 1), sphere_type(0.5, 3), Vec4(0.5, 0.5, 0.4, 0.36)},
+            {fixed_box, sphere_type(0.5, 2), 0.999 * up},
+            {plane, box, 0.69 * up},
+            {plane, cube, 0.497 * up},
+            {plane, capsule_type(0.3, 1, 2), 0.29 * up},
+            {fixed_box, box, 1.19 * up},
+            {turning_box, box, 1.19 * up + Vec4(0.3, 0, 0.2, 0.1)},
+            {cube, box, 1.19 * up + Vec4(0.3, 0, 0.2, 0.1)},
+            {box, sphere_type(0.4, 1), 1.09 * up + Vec4(0.3, 0, 0.2, 0.1)},
+            {box, capsule_type(0.3, 1, 2), Vec4(0.1, 0.98, 0, 0)}};
+}
+
+TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
+    Generator random(5);
+    std::size_t most_points = 0;
+    for (const OnePair& pair : pairs_of_all_kinds())
+        for (int round = 0; round < 40; ++round) {
+            const bool soft = round % 2 == 0;
+            const double friction = round % 4 < 2 ? 0.4 : round % 8 < 4 ? 0 : 100;
+            Bodies bodies;
+            for (const BodyType& shape : {pair.a, pair.b}) {
+                BodyType type = shape;
+                type.friction = friction;
+                type.restitution = round % 3 == 0 ? 0.3 : 0;
+                const bool second = bodies.size() == 1;
+                add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0),
+                    is_bounded(type.shape) ? random_vector(random, 0.3) : Vec4(0, 0, 0, 0),
+                    is_bounded(type.shape) ? 0.2 * random_bivector(random) : Bivector{});
+            }
+            // The one-by-one solver needs several iterations to turn the slip of a sphere.
+            const PhysicsSettings settings =
+                settings_of(soft ? Solver::kSoft : Solver::kImpulse, 100);
+            const StepData plain = solved(bodies, settings, kStep, kNoneColoured);
+            const StepData coloured = solved(bodies, settings, kStep, 1);
+            if (plain.contacts.empty()) continue;
+            ASSERT_TRUE(coloured.islands.is_coloured(0));
+            most_points = std::max(most_points, plain.contacts.size());
+            // Speeds of 1 m/s are rounded by 6e-8. Each of up to eight points hands that on to the
+            // others, ten times as large where a corner yields that much more than the centre.
+            EXPECT_LT(difference(plain, coloured), 1e-5)
+                << "pair of shapes " << bodies.types[0].shape.index() << " and "
+                << bodies.types[1].shape.index() << ", round " << round;
+        }
+    EXPECT_EQ(most_points, 8u);
+}
+
+/// A heap of spheres, boxes and capsules about to touch, far from rest, as one island.
+Bodies crowd(double friction, bool boxes = true) {
+    Generator random(11);
+    Bodies bodies;
+    for (int i = 0; i < 81; ++i) {
+        BodyType type = sphere_type(0.5, 1.0 + i % 4);
+        if (boxes && i % 3 == 1) type = box_type({0.9, 1, 0.95, 0.85}, 2);
+        if (i % 3 == 2) type = capsule_type(0.4, 0.2, 3);
+        type.friction = friction;
+        const Vec4 place(i % 3, i / 3 % 3, i / 9 % 3, i / 27);
+        add(bodies, type, 0.9 * place, random_vector(random, 1), random_bivector(random));
+    }
+    return bodies;
+}
+
+/// Without friction the velocities that satisfy all contacts are unique, whatever the order in
+/// which they are solved.
+TEST(ColouredSolver, ConvergesToTheVelocitiesOfTheOneByOneSolver) {
+    const PhysicsSettings settings = settings_of(Solver::kImpulse, 4000);
+    const StepData plain = solved(crowd(0, false), settings, kStep, kNoneColoured);
+    const StepData coloured = solved(crowd(0, false), settings, kStep, 1);
+    ASSERT_GT(coloured.contacts.size(), 150u);
+    const auto left = [](const StepData& step) {
+        return *std::max_element(step.residual.begin(), step.residual.end());
+    };
+    // The iterations have ended, up to rounding of some 1 m/s in double and in float; that adds up
+    // over a chain of ten bodies.
+    EXPECT_LT(left(plain), 1e-12);
+    EXPECT_LT(left(coloured), 1e-6);
+    EXPECT_LT(difference(plain, coloured), 1e-5);
+    const StepData early = solved(crowd(0, false), settings_of(Solver::kImpulse, 5), kStep, 1);
+    EXPECT_GT(difference(plain, early), 1e-3);
+}
+
+/// Bodies shifted to 10^5 m and made faster by 10^3 m/s, by powers of two so that the shift rounds
+/// positions alone, by 1e-11 m.
+TEST(ColouredSolver, WorksAsWellFarAwayAndAtHighSpeed) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
+        const PhysicsSettings settings = settings_of(solver, 10);
+        const StepData here = solved(crowd(0.5), settings, kStep, 1);
+        Bodies bodies = crowd(0.5);
+        const Vec4 drift(1024, -512, 512, 1024);
+        for (BodyId id = 0; id < bodies.size(); ++id) {
+            bodies.position[id] += Vec4(131072, -65536, 131072, 65536) - 0.5 * kStep * drift;
+            bodies.velocity[id] += drift;
+        }
+        StepData there = solved(bodies, settings, kStep, 1);
+        for (Vec4& velocity : there.velocity) velocity -= drift;
+        ASSERT_GT(here.contacts.size(), 150u);
+        ASSERT_EQ(there.contacts.size(), here.contacts.size());
+        // Targets are 1/h times overlaps that are 1e-11 m off: 2.4e-9 m/s. These flip roundings of
+        // floats, 6e-8 of 1 m/s, which the iterations hand on.
+        EXPECT_LT(difference(here, there), 1e-5);
+        const auto carries = [](const ContactImpulse& impulse) { return impulse.normal > 0.01; };
+        EXPECT_GT(std::count_if(here.impulses.begin(), here.impulses.end(), carries), 50);
+    }
+}
+
+/// Eight spheres on 32 that weigh a thousandth.
+TEST(ColouredSolver, HoldsHeavyBodiesOnLightOnes) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (const int axis : {0, 2, 3})
+        for (const double side : {-1.0, 1.0})
+            add(bodies, plane_type(side * Vec4::Unit(axis), -1.05, 0.5));
+    for (int i = 0; i < 40; ++i)
+        add(bodies, sphere_type(0.5, i < 32 ? 1 : 1000, 0.5),
+            {i % 2 - 0.5, i / 8 + 0.5, i / 2 % 2 - 0.5, i / 4 % 2 - 0.5});
+    PhysicsSettings settings = settings_of(Solver::kSoft, 30);
+    settings.substeps = 8;
+    World plain(make_simulation(bodies, settings), kNoneColoured);
+    World coloured(make_simulation(bodies, settings), 1);
+    double deepest_plain = 0, deepest = 0;
+    for (int i = 0; i < 240; ++i) {
+        deepest_plain = std::max(deepest_plain, plain.step(kStep).penetration);
+        deepest = std::max(deepest, coloured.step(kStep).penetration);
+    }
+    // The overlap that the solver leaves alone; one part in ten is granted beyond.
+    EXPECT_LT(deepest_plain, 1.1 * kSlop * 0.5);
+    EXPECT_LT(deepest, 1.1 * kSlop * 0.5);
+    for (BodyId id = 39; id < 47; ++id) EXPECT_GT(coloured.bodies().position[id][1], 4);
+}
+
+}  // namespace
+}  // namespace tesserae
