@@ -40,10 +40,14 @@ TestScene white_heap(Random& random, int bodies) {
     scene.materials[3].ior = 1.2;
     scene.materials[4].kind = MaterialKind::kRough;
     scene.materials[4].roughness = 0.8;
-    for (int i = 0; i < bodies; ++i)
-        scene.add(random_shape(random, static_cast<int>(random() % 3), 0.8),
-                  4 * Vec4::UnitZ() + random_vector(random, 0.8), random_rotor(random),
-                  static_cast<std::uint32_t>(random() % 5));
+    for (int i = 0; i < bodies; ++i) {
+        // One draw after the other: the order of a call's arguments is the compiler's.
+        const auto material = static_cast<std::uint32_t>(random() % 5);
+        const Rotor rotor = random_rotor(random);
+        const Vec4 place = 4 * Vec4::UnitZ() + random_vector(random, 0.8);
+        const auto kind = static_cast<int>(random() % 3);
+        scene.add(random_shape(random, kind, 0.8), place, rotor, material);
+    }
     return scene;
 }
 

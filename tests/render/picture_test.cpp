@@ -153,8 +153,12 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
     scene.settings.width = 80, scene.settings.height = 60;
     scene.settings.samples = 1;
     scene.camera = random_camera(random, 7);
-    for (int i = 0; i < 40; ++i)
-        scene.add(random_shape(random, i % 3, 0.7), random_vector(random, 2), random_rotor(random));
+    for (int i = 0; i < 40; ++i) {
+        // One draw after the other: the order of a call's arguments is the compiler's.
+        const Rotor rotor = random_rotor(random);
+        const Vec4 place = random_vector(random, 2);
+        scene.add(random_shape(random, i % 3, 0.7), place, rotor);
+    }
     scene.add(Hyperplane{Vec4(1, 2, -1, 1).normalized(), -6}, Vec4::Zero());
     const Image image = picture_of(scene);
     const OracleCamera camera(scene);

@@ -55,7 +55,10 @@ Shape random_shape(Random& random, int kind, double size) {
     const auto side = [&] { return size * uniform(random, 0.3, 1.5); };
     if (kind == 0) return Hypersphere{side()};
     if (kind == 1) return Hypercapsule{0.5 * side(), 2 * side()};
-    return Hyperbox{2 * Vec4(side(), side(), side(), side())};
+    // As g++ draws the arguments of a call: the last one first.
+    Vec4 sides;
+    for (int axis = 3; axis >= 0; --axis) sides[axis] = side();
+    return Hyperbox{2 * sides};
 }
 
 TestScene cloud(std::uint64_t seed, int count, double spread, double least, double largest) {
