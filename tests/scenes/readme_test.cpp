@@ -17,7 +17,9 @@ TEST(Readme, LinksLeadToFilesThatHoldWhatTheyName) {
     const std::regex link(R"(\[([^\]]*)\]\(([^)#]+)\))");
     const std::regex name(R"(`(?:\w+::)?(\w+)`)");
     int links = 0, names = 0;
-    for (const char* room : {"", "core", "parallel", "render", "scenes", "bench"}) {
+    for (const char* room :
+         {"", "core", "core/dynamics/state", "core/dynamics/stages", "core/dynamics/solver",
+          "core/dynamics/diagnostics", "parallel", "render", "scenes", "bench"}) {
         const fs::path readme = kSource / room / "README.md";
         ASSERT_TRUE(fs::exists(readme)) << readme;
         const std::string text = content(readme);

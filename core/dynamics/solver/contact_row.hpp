@@ -2,27 +2,10 @@
 
 #include <cmath>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
-
-/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
-/// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
-constexpr double kBiasPart = 0.2;
-
-/// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
-/// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.
-constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
-
-/// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second (and
-/// what gravity adds in a sub-step): so that those that start deep inside each other do not
-/// explode. Less, and a heavy load sinks in.
-constexpr double kLargestPush = 4;
-
-/// Approach speed above which restitution acts, as a multiple of what gravity adds in a sub-step:
-/// slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle; higher, bouncing
-/// ends too soon. Where there is no gravity every approach bounces.
-constexpr double kRestitutionKicks = 4;
 
 /// What a row aims at, along the normal; see NormalPass.
 struct ContactTargets {
@@ -46,7 +29,7 @@ double least_response(const Simulation& simulation, BodyId a, BodyId b);
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact,
                     const ContactImpulse& impulse);
 
-/// Of b against a at the contact point [m/s].
+/// The velocity of body b relative to body a at the contact point [m/s].
 /// @param turning   see Needs
 inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, BodyId b,
                               const Vec4& r_b, bool turning) {

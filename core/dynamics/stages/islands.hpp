@@ -1,14 +1,10 @@
 #pragma once
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/stages/colouring.hpp"
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
-
-/// Contacts from which on an island is coloured and solved in float, eight at a time. Fewer are
-/// solved in double, one by one, in the order of their bodies, which suits towers listed from the
-/// ground.
-constexpr std::uint32_t kColouredFrom = 1024;
 
 /// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.
 class IslandBuilder {

@@ -1,17 +1,9 @@
 #pragma once
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
-
-/// A body is still while no point of it moves faster than this part of its least half-size a second
-/// (ten times the overlap that the solver leaves alone). More, and slow motion freezes; less, and
-/// the last trembling of a pile keeps it awake.
-constexpr double kStill = 10 * kSlop;
-
-/// How long [s] all bodies of an island have to be still before it falls asleep: longer than a body
-/// thrown upward is at its highest point.
-constexpr double kTimeToSleep = 0.5;
 
 /// Whether a contact of the range reaches a body that sleeps.
 bool touches_sleeper(const StepData& step, Range contacts);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/bodies.hpp"
 
 namespace tesserae {
@@ -25,11 +26,6 @@ struct TypeProperties {
     double friction = 0;
     double restitution = 0;
 };
-
-/// Overlap that the solver leaves alone, as a part of the least half-size, usual 0.005: a resting
-/// contact then keeps touching. More shows as bodies that sink into each other; 0 lets resting
-/// contacts come and go.
-constexpr double kSlop = 0.005;
 
 /// @return one entry for each of bodies.types
 std::vector<TypeProperties> type_properties(const Bodies& bodies);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+// What was chosen, not derived, of how contacts are solved: each with its unit, its usual value and
+// what breaks when it changes. A change moves golden hashes: see motion_version.hpp.
+namespace tesserae {
+
+/// Overlap that the solver leaves alone, as a part of the least half-size, usual 0.005: a resting
+/// contact then keeps touching. More shows as bodies that sink into each other; 0 lets resting
+/// contacts come and go.
+constexpr double kSlop = 0.005;
+
+/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
+/// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
+constexpr double kBiasPart = 0.2;
+
+/// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
+/// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.
+constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
+
+/// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second (and
+/// what gravity adds in a sub-step): so that those that start deep inside each other do not
+/// explode. Less, and a heavy load sinks in.
+constexpr double kLargestPush = 4;
+
+/// Approach speed above which restitution acts, as a multiple of what gravity adds in a sub-step:
+/// slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle; higher, bouncing
+/// ends too soon. Where there is no gravity every approach bounces.
+constexpr double kRestitutionKicks = 4;
+
+/// Contacts from which on an island is coloured and solved in float, eight at a time. Fewer are
+/// solved in double, one by one, in the order of their bodies, which suits towers listed from the
+/// ground.
+constexpr std::uint32_t kColouredFrom = 1024;
+
+/// A body is still while no point of it moves faster than this part of its least half-size a second
+/// (ten times the overlap that the solver leaves alone). More, and slow motion freezes; less, and
+/// the last trembling of a pile keeps it awake.
+constexpr double kStill = 10 * kSlop;
+
+/// How long [s] all bodies of an island have to be still before it falls asleep: longer than a body
+/// thrown upward is at its highest point.
+constexpr double kTimeToSleep = 0.5;
+
+}  // namespace tesserae
