@@ -52,7 +52,9 @@ class ClosestOffset {
             if (entering < 0) return;
             side_[entering] = 0;
             free_[free_count_++] = entering;
-            while (free_count_ > 0 && !move_free() && ++step < kMostSteps) {
+            for (bool moved = false; !moved && free_count_ > 0 && step < kMostSteps;) {
+                moved = move_free();
+                if (!moved) ++step;
             }
         }
     }

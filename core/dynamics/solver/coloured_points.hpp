@@ -43,7 +43,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
         points.along[lane]);
 }
 
-/// As a float that can be squared.
+/// The friction coefficient as a float whose square is one too: 1e36 of at most 3e38.
 inline float float_friction(const Simulation& simulation, const Contact& c) {
     return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), 1e18));
 }
