@@ -57,22 +57,11 @@ std::vector<RowPair> match_steps(const std::vector<std::uint64_t>& a,
     return pairs;
 }
 
-/// Room for the bodies' states of a row.
-Bodies bodies_for(std::uint64_t count) {
-    Bodies bodies;
-    bodies.type.resize(count);
-    bodies.position.resize(count);
-    bodies.rotor.resize(count);
-    bodies.velocity.resize(count);
-    bodies.angular_velocity.resize(count);
-    return bodies;
-}
-
 /// Both trajectories, read at the same steps.
 class RowComparison {
   public:
     RowComparison(const std::filesystem::path& a, const std::filesystem::path& b)
-        : a_(a), b_(b), state_a_(bodies_for(a_.header().bodies)), state_b_(state_a_) {}
+        : a_(a), b_(b), state_a_(room_for(a_.header().bodies)), state_b_(state_a_) {}
 
     void compare(TrajectoryDifference& difference);
 

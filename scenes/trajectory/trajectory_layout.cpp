@@ -306,6 +306,16 @@ std::uint64_t checked_file_bytes(const std::filesystem::path& path) {
     return bytes;
 }
 
+Bodies room_for(std::uint64_t bodies) {
+    Bodies room;
+    room.type.resize(bodies);
+    room.position.resize(bodies);
+    room.rotor.resize(bodies);
+    room.velocity.resize(bodies);
+    room.angular_velocity.resize(bodies);
+    return room;
+}
+
 void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFacts& facts,
                const Bodies& bodies) {
     data.resize(row + 1);

@@ -93,6 +93,9 @@ TrajectoryHeader read_header(const hdf5::Handle& file, std::uint64_t file_bytes)
 /// @throws hdf5::Failure
 std::uint64_t checked_file_bytes(const std::filesystem::path& path);
 
+/// Bodies without types whose states a row can be read into.
+Bodies room_for(std::uint64_t bodies);
+
 void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFacts& facts,
                const Bodies& bodies);
 void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& facts, Bodies& bodies);

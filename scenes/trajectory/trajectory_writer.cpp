@@ -39,16 +39,6 @@ void write_record(const hdf5::Handle& dataset, const ResumeRecord& record) {
     hdf5::write_rows(dataset, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
 }
 
-Bodies room_for(std::uint64_t bodies) {
-    Bodies room;
-    room.type.resize(bodies);
-    room.position.resize(bodies);
-    room.rotor.resize(bodies);
-    room.velocity.resize(bodies);
-    room.angular_velocity.resize(bodies);
-    return room;
-}
-
 }  // namespace
 
 struct TrajectoryWriter::File {

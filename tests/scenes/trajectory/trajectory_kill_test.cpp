@@ -79,7 +79,8 @@ TrajectoryHeader killed_header(std::uint64_t rows) {
     header.hash = std::to_string(rows);
     // Other names, longer and shorter.
     static std::map<std::uint64_t, NamedBodies> names;
-    const NamedBodies& named = names[rows] = {"run-" + std::string(rows % 9, 'x'), 0, kKilledBodies};
+    const NamedBodies& named =
+        names[rows] = {"run-" + std::string(rows % 9, 'x'), 0, kKilledBodies};
     header.effective = "[[body]]\nname = \"" + named.name + "\"\n";
     header.described.names = {&named, 1};
     return header;
