@@ -8,11 +8,9 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <optional>
-#include <sstream>
-#include <string>
 
 #include "core/error.hpp"
+#include "parallel/control_groups.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -24,50 +22,24 @@ int cores_of_affinity() {
     return std::max(1, CPU_COUNT(&set));
 }
 
-/// Quota over period [cores] of one control group; none if it has no limit or no such file.
-std::optional<double> quota_of_version_2(const std::string& folder) {
-    std::ifstream file(folder + "/cpu.max");
+/// Quota over period [cores] of one control group; infinite if it has no limit or no such file.
+double quota_of(const ControlGroup& group) {
     double quota = 0, period = 0;
-    if (file >> quota >> period && quota > 0 && period > 0) return quota / period;
-    return std::nullopt;  // "max 100000" is no number: no limit
-}
-
-std::optional<double> quota_of_version_1(const std::string& folder) {
-    std::ifstream quota_file(folder + "/cpu.cfs_quota_us");
-    std::ifstream period_file(folder + "/cpu.cfs_period_us");
-    double quota = 0, period = 0;
-    if (quota_file >> quota && period_file >> period && quota > 0 && period > 0)
-        return quota / period;
-    return std::nullopt;
-}
-
-/// The least quota of a group and of all groups that hold it.
-double least_quota(const std::string& root, std::string group,
-                   std::optional<double> (*quota_of)(const std::string&)) {
-    double least = std::numeric_limits<double>::infinity();
-    for (;;) {
-        if (const auto quota = quota_of(root + group)) least = std::min(least, *quota);
-        const std::size_t slash = group.rfind('/');
-        if (slash == std::string::npos) return least;
-        group.erase(slash);
+    if (group.version == 2) {
+        // "max 100000" is no number: no limit.
+        std::ifstream(group.folder / "cpu.max") >> quota >> period;
+    } else {
+        std::ifstream(group.folder / "cpu.cfs_quota_us") >> quota;
+        std::ifstream(group.folder / "cpu.cfs_period_us") >> period;
     }
+    const bool is_limited = quota > 0 && period > 0;
+    return is_limited ? quota / period : std::numeric_limits<double>::infinity();
 }
 
 double cores_of_control_groups() {
     double least = std::numeric_limits<double>::infinity();
-    std::ifstream file("/proc/self/cgroup");
-    // Lines are hierarchy:controllers:group; version 2 has no controllers.
-    for (std::string line; std::getline(file, line);) {
-        std::istringstream fields(line);
-        std::string hierarchy, controllers, group;
-        std::getline(fields, hierarchy, ':');
-        std::getline(fields, controllers, ':');
-        std::getline(fields, group);
-        if (controllers.empty())
-            least = std::min(least, least_quota("/sys/fs/cgroup", group, quota_of_version_2));
-        else if (("," + controllers + ",").find(",cpu,") != std::string::npos)
-            least = std::min(least, least_quota("/sys/fs/cgroup/cpu", group, quota_of_version_1));
-    }
+    for (const ControlGroup& group : control_groups("cpu"))
+        least = std::min(least, quota_of(group));
     return least;
 }
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <string>
 
+#include "parallel/control_groups.hpp"
+
 namespace tesserae::scenes {
 namespace {
 
@@ -31,33 +33,17 @@ std::uint64_t machine_available() {
     return kUnlimited;
 }
 
-/// The least that any group from `group` up to the mount point `root` leaves. Page cache that the
-/// group could drop counts as used; that errs on the safe side.
-std::uint64_t groups_available(const std::filesystem::path& root, std::filesystem::path group,
-                               const char* limit, const char* usage) {
+/// The least that any control group leaves. Page cache that a group could drop counts as used; that
+/// errs on the safe side.
+std::uint64_t groups_available() {
     std::uint64_t least = kUnlimited;
-    for (group = group.relative_path();; group = group.parent_path()) {
-        const auto folder = root / group;
-        least = std::min(least, left_of(number_in(folder / limit), number_in(folder / usage)));
-        if (group.empty()) return least;
-    }
-}
-
-std::uint64_t cgroup_available() {
-    std::uint64_t least = kUnlimited;
-    std::ifstream in("/proc/self/cgroup");
-    for (std::string line; std::getline(in, line);) {
-        const auto first = line.find(':'), second = line.find(':', first + 1);
-        if (second == std::string::npos) continue;
-        const std::string controllers = line.substr(first + 1, second - first - 1);
-        const std::filesystem::path group = line.substr(second + 1);
-        if (controllers.empty())
-            least = std::min(
-                least, groups_available("/sys/fs/cgroup", group, "memory.max", "memory.current"));
-        else if (controllers.find("memory") != std::string::npos)
-            least =
-                std::min(least, groups_available("/sys/fs/cgroup/memory", group,
-                                                 "memory.limit_in_bytes", "memory.usage_in_bytes"));
+    for (const auto& [folder, version] : parallel::control_groups("memory")) {
+        const bool is_second = version == 2;
+        const std::uint64_t limit =
+            number_in(folder / (is_second ? "memory.max" : "memory.limit_in_bytes"));
+        const std::uint64_t used =
+            number_in(folder / (is_second ? "memory.current" : "memory.usage_in_bytes"));
+        least = std::min(least, left_of(limit, used));
     }
     return least;
 }
@@ -74,7 +60,7 @@ std::uint64_t address_space_left() {
 }  // namespace
 
 std::uint64_t available_memory() {
-    return std::min({machine_available(), cgroup_available(), address_space_left()});
+    return std::min({machine_available(), groups_available(), address_space_left()});
 }
 
 }  // namespace tesserae::scenes
