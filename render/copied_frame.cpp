@@ -24,7 +24,7 @@ void copy_bytes(const std::filesystem::path& from, const std::filesystem::path& 
 void copy_frame(const FrameFiles& from, const Picture& picture, const FrameInfo& info,
                 const FrameFiles& to) {
     const Settings& settings = picture.settings;
-    const Crop window = settings.crop.value_or(Crop{0, 0, settings.width, settings.height});
+    const Crop window = settings.window();
     const Camera camera(picture.camera, settings.width, settings.height);
     ExrWriter image(to.exr, settings, window, info, picture.camera, camera);
     image.copy_tiles(from.exr);

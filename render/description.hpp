@@ -125,6 +125,8 @@ struct Settings {
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;
 
+    /// The pixels that are rendered: all, or the crop.
+    Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
     /// Of a pixel.
     int most_samples() const { return noise_target > 0 ? std::max(samples, max_samples) : samples; }
 };

@@ -37,7 +37,7 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
                         const std::filesystem::path& exr, const std::filesystem::path& preview,
                         const std::atomic<bool>& stop) {
     const Settings& settings = picture.settings;
-    const Crop window = settings.crop.value_or(Crop{0, 0, settings.width, settings.height});
+    const Crop window = settings.window();
     const FrameScene scene(picture, settings.channels.color || !preview.empty());
     TileSource source(scene.slice(), window, settings.tile);
     ExrWriter image(exr, settings, window, info, picture.camera, scene.opening().camera);

@@ -109,17 +109,14 @@ void decide_physics(const Scene& scene, Plan& plan) {
 Plan make_plan(const Scene& scene, int threads) {
     Plan plan;
     plan.bodies = scene.bodies.size();
-    const auto is_movable = [&](std::uint32_t type) {
-        const BodyType& t = scene.bodies.types[type];
-        return is_bounded(t.shape) && !(t.fixed_position && t.fixed_rotation);
-    };
-    plan.movable_bodies = count_if_type(scene.bodies, is_movable);
+    const auto can_move = [&](std::uint32_t type) { return is_movable(scene.bodies.types[type]); };
+    plan.movable_bodies = count_if_type(scene.bodies, can_move);
     plan.moves = any_motion(scene);
     plan.steps = step_count(scene);
     plan.frames = frame_count(scene);
 
     const render::Settings& r = scene.render;
-    const render::Crop crop = r.crop.value_or(render::Crop{0, 0, r.width, r.height});
+    const render::Crop crop = r.window();
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
     // With several samples a pixel's centre has a ray of its own, for depth, normal and id.
     const auto samples = static_cast<std::uint64_t>(r.most_samples());
@@ -127,7 +124,7 @@ Plan make_plan(const Scene& scene, int threads) {
     plan.view_rays = pixels * rays * plan.frames;
     const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;
     const std::uint64_t movable_spheres = count_if_type(scene.bodies, [&](std::uint32_t type) {
-        return is_movable(type) &&
+        return can_move(type) &&
                std::holds_alternative<Hypersphere>(scene.bodies.types[type].shape);
     });
     plan.memory_bytes =

@@ -21,6 +21,11 @@ struct BodyType {
     friend bool operator==(const BodyType&, const BodyType&) = default;
 };
 
+/// Contacts can change the motion of its bodies.
+inline bool is_movable(const BodyType& type) {
+    return is_bounded(type.shape) && !(type.fixed_position && type.fixed_rotation);
+}
+
 /// All bodies of a scene: their types, and their state as a structure of arrays indexed by BodyId.
 /// Bodies of unbounded shapes are fixed at the origin with the identity rotor.
 struct Bodies {
@@ -34,10 +39,7 @@ struct Bodies {
     std::size_t size() const { return type.size(); }
     const BodyType& type_of(BodyId id) const { return types[type[id]]; }
     /// Contacts can change its motion.
-    bool is_movable(BodyId id) const {
-        const BodyType& t = type_of(id);
-        return is_bounded(t.shape) && !(t.fixed_position && t.fixed_rotation);
-    }
+    bool is_movable(BodyId id) const { return tesserae::is_movable(type_of(id)); }
 };
 
 /// Positions and rotors on the way from `before` to `after`, those of the same bodies later:

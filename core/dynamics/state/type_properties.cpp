@@ -32,7 +32,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.slop = kSlop * least_half_size;
     p.arm = least_half_size < p.radius ? p.radius : 0;
 
-    p.movable = !(type.fixed_position && type.fixed_rotation);
+    p.movable = is_movable(type);
     p.falls = !type.fixed_position;
     if (!type.fixed_position) p.inverse_mass = 1 / type.mass;
     const bool slips_round = p.arm == 0 && type.friction == 0;
