@@ -3,7 +3,7 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 # What is needed, by purpose, with the versions of Debian 12 and 13, both of which work; Ubuntu
-# 24.04 has the same names and versions between these.
+# 24.04 has the same names and versions between these, but was not tried.
 packages=(
     g++                   # a C++20 compiler: g++ 12.2, 14.2; clang++ 14, 19 do as well
     cmake ninja-build     # 3.25, 3.31

@@ -80,8 +80,8 @@ for suite in "${suites[@]}"; do
 done
 
 # Two lines, of the frames and of the trajectory, in every one of them.
-sort "$folder"/*.hash | uniq -c
-[ "$(sort -u "$folder"/*.hash | wc -l)" = 2 ] || failed+=("the hashes differ")
+for suite in "${suites[@]}"; do cat "$folder/$suite".*.hash; done | sort | uniq -c | tee "$folder/hashes"
+[ "$(wc -l <"$folder/hashes")" = 2 ] || failed+=("the hashes differ")
 if [ ${#failed[@]} != 0 ]; then
     printf 'failed: %s\n' "${failed[@]}" >&2
     exit 1
