@@ -22,9 +22,9 @@
 #include "core/dynamics/stages/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
-#include "scenes/film.hpp"
+#include "scenes/film/film.hpp"
 #include "scenes/load/load.hpp"
-#include "scenes/simulate.hpp"
+#include "scenes/trajectory/simulate.hpp"
 
 namespace tesserae::bench {
 namespace {

@@ -17,7 +17,7 @@
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
-#include "scenes/generate.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load/load.hpp"
 
 namespace tesserae::bench {

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/file/file_writer.hpp"
 #include "render/camera.hpp"
 #include "render/file/exr_writer.hpp"
-#include "render/file/file_writer.hpp"
 
 namespace tesserae::render {
 namespace {

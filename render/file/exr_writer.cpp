@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "render/file/file_writer.hpp"
+#include "core/file/file_writer.hpp"
 #include "render/file/image_info.hpp"
 
 namespace tesserae::render {

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "core/error.hpp"
-#include "render/file/file_writer.hpp"
+#include "core/file/file_writer.hpp"
 
 namespace tesserae::render {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/file_kind.hpp"
+#include "scenes/compare/file_kind.hpp"
 
 // What is in a file, apart from how it is stored: two files of equal content have equal hashes on
 // any machine.

@@ -10,7 +10,7 @@
 #include "scenes/load/lattice.hpp"
 #include "scenes/load/load_parts.hpp"
 #include "scenes/load/nearest_name.hpp"
-#include "scenes/memory.hpp"
+#include "scenes/process/memory.hpp"
 
 namespace tesserae::scenes {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
-#include "scenes/memory.hpp"
+#include "scenes/process/memory.hpp"
 
 namespace tesserae::scenes {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
 #include "render/picture_version.hpp"
-#include "scenes/generate.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
 

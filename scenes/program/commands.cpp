@@ -7,20 +7,20 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/file/file_writer.hpp"
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
-#include "render/file/file_writer.hpp"
-#include "scenes/film.hpp"
-#include "scenes/generate.hpp"
+#include "scenes/film/film.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load/load.hpp"
-#include "scenes/plan.hpp"
-#include "scenes/plan_picture.hpp"
+#include "scenes/plan/plan.hpp"
+#include "scenes/plan/plan_picture.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
 #include "scenes/program/info.hpp"
-#include "scenes/progress.hpp"
-#include "scenes/signals.hpp"
-#include "scenes/simulate.hpp"
 #include "scenes/timeline.hpp"
+#include "scenes/trajectory/simulate.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -108,11 +108,11 @@ SimulateReport traced_simulate(const CommandLine& line, const Work& work, const 
     if (!line.trace.empty()) {
         trace.emplace();
         // Empty at first, so that a path that cannot be written shows before the work.
-        render::write_file(line.trace, trace->json());
+        write_file(line.trace, trace->json());
     }
     const SimulateReport report = simulate(work.scene, work.plan, file, line.store_every,
                                            line.overwrite, line.quiet, trace ? &*trace : nullptr);
-    if (trace) render::write_file(line.trace, trace->json());
+    if (trace) write_file(line.trace, trace->json());
     return report;
 }
 
@@ -153,7 +153,7 @@ void film_command(const CommandLine& line) {
         filmed = film(scene, frames, trajectory, line.output, line.overwrite, line.quiet);
     });
     json["render"] = to_json(filmed);
-    if (line.command == "run") render::write_file(line.output / "report.json", json.dump(2) + "\n");
+    if (line.command == "run") write_file(line.output / "report.json", json.dump(2) + "\n");
     print_result(line, json, filmed_text(filmed));
 }
 

@@ -7,9 +7,9 @@
 
 #include "core/error.hpp"
 #include "render/file/image_info.hpp"
-#include "scenes/file_kind.hpp"
+#include "scenes/compare/file_kind.hpp"
 #include "scenes/load/load.hpp"
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {

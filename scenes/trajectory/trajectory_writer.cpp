@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "core/error.hpp"
-#include "render/file/partial_file.hpp"
+#include "core/file/partial_file.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
 #include "scenes/trajectory/body_datasets.hpp"
@@ -42,7 +42,7 @@ void write_record(const hdf5::Handle& dataset, const ResumeRecord& record) {
 }  // namespace
 
 struct TrajectoryWriter::File {
-    render::PartialFile lock;
+    PartialFile lock;
     TrajectoryHeader header;
     std::vector<std::uint64_t> steps;
     std::string note;

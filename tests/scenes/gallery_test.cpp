@@ -8,7 +8,7 @@
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/world.hpp"
 #include "scenes/load/load.hpp"
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 
 namespace tesserae::scenes {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/dynamics/stages/islands.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
-#include "scenes/generate.hpp"
+#include "scenes/generate/generate.hpp"
 #include "scenes/load/hash.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 #include "tests/scenes/program/program.hpp"

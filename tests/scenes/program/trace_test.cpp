@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "scenes/generate.hpp"
+#include "scenes/generate/generate.hpp"
 #include "tests/scenes/program/program.hpp"
 
 namespace tesserae::scenes::testing {

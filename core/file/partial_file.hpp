@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tesserae::render {
+namespace tesserae {
 
 /// PATH.partial, open for reading and writing and locked (flock) against other processes until it
 /// gets its final name. A killed process leaves no lock, and its leftover content is still there
@@ -39,4 +39,4 @@ class PartialFile {
     int descriptor_ = -1;
 };
 
-}  // namespace tesserae::render
+}  // namespace tesserae

@@ -1,4 +1,4 @@
-#include "scenes/file_kind.hpp"
+#include "scenes/compare/file_kind.hpp"
 
 #include <array>
 #include <fstream>

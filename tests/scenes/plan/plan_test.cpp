@@ -1,4 +1,4 @@
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 
 #include <gtest/gtest.h>
 

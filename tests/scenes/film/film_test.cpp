@@ -1,4 +1,4 @@
-#include "scenes/film.hpp"
+#include "scenes/film/film.hpp"
 
 #include <gtest/gtest.h>
 

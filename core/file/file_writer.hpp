@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "render/file/partial_file.hpp"
+#include "core/file/partial_file.hpp"
 
-namespace tesserae::render {
+namespace tesserae {
 
 /// The one way to write a file. Bytes go to PATH.partial; finish() checks, syncs and closes it,
 /// renames it to PATH and syncs the folder, so that a file under its final name is always whole.
@@ -43,4 +43,4 @@ class FileWriter {
 /// Writes a whole file at once, for example a report.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-}  // namespace tesserae::render
+}  // namespace tesserae

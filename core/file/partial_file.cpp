@@ -1,4 +1,4 @@
-#include "render/file/partial_file.hpp"
+#include "core/file/partial_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace tesserae::render {
+namespace tesserae {
 namespace {
 
 template <class Call>
@@ -111,4 +111,4 @@ void PartialFile::fail(const char* what, int error) {
     throw RunError(message(what, error));
 }
 
-}  // namespace tesserae::render
+}  // namespace tesserae

@@ -1,4 +1,4 @@
-#include "scenes/progress.hpp"
+#include "scenes/process/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

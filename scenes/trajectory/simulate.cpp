@@ -1,4 +1,4 @@
-#include "scenes/simulate.hpp"
+#include "scenes/trajectory/simulate.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +9,8 @@
 #include "core/dynamics/stages/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
-#include "scenes/progress.hpp"
-#include "scenes/signals.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 

@@ -1,4 +1,4 @@
-#include "scenes/memory.hpp"
+#include "scenes/process/memory.hpp"
 
 #include <sys/resource.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "parallel/trace.hpp"
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 #include "scenes/scene.hpp"
 
 namespace tesserae::scenes {

@@ -1,4 +1,4 @@
-#include "render/file/file_writer.hpp"
+#include "core/file/file_writer.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -14,10 +14,9 @@
 
 #include "core/error.hpp"
 #include "tests/error_of.hpp"
-#include "tests/render/test_scene.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace tesserae::render {
+namespace tesserae {
 namespace {
 
 namespace fs = std::filesystem;
@@ -204,4 +203,4 @@ TEST_F(FileWriterTest, ManyWritersOfOneFileLeaveOneWholeFile) {
 }
 
 }  // namespace
-}  // namespace tesserae::render
+}  // namespace tesserae

@@ -1,4 +1,4 @@
-#include "scenes/generate.hpp"
+#include "scenes/generate/generate.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scenes/film.hpp"
+#include "scenes/film/film.hpp"
 
 #include <chrono>
 #include <fstream>
@@ -7,14 +7,14 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/file/file_writer.hpp"
 #include "render/copied_frame.hpp"
-#include "render/file/file_writer.hpp"
 #include "render/file/image_info.hpp"
+#include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
-#include "scenes/poses.hpp"
-#include "scenes/progress.hpp"
-#include "scenes/signals.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
@@ -172,7 +172,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     create_folder(report.frames);
     create_folder(folder / "preview");
     if (!fs::exists(folder / kSceneFile) || overwrite)
-        render::write_file(folder / kSceneFile, scene.effective);
+        write_file(folder / kSceneFile, scene.effective);
 
     render::FrameInfo info;
     info.scene_name = scene.name;

@@ -1,4 +1,4 @@
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 
 #include <algorithm>
 
@@ -6,8 +6,8 @@
 #include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
 #include "render/frame_scene.hpp"
-#include "scenes/memory.hpp"
-#include "scenes/plan_picture.hpp"
+#include "scenes/plan/plan_picture.hpp"
+#include "scenes/process/memory.hpp"
 #include "scenes/timeline.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scenes/plan.hpp"
+#include "scenes/plan/plan.hpp"
 
 namespace tesserae::scenes {
 

@@ -1,4 +1,4 @@
-#include "scenes/plan_picture.hpp"
+#include "scenes/plan/plan_picture.hpp"
 
 #include "core/error.hpp"
 #include "render/camera.hpp"

@@ -1,4 +1,4 @@
-#include "render/file/file_writer.hpp"
+#include "core/file/file_writer.hpp"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace tesserae::render {
+namespace tesserae {
 namespace {
 
 /// Small writes (EXR headers, PNG rows) gather up to this many bytes, usual 64 KiB: far more and
@@ -92,4 +92,4 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
     writer.finish();
 }
 
-}  // namespace tesserae::render
+}  // namespace tesserae

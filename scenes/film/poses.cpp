@@ -1,4 +1,4 @@
-#include "scenes/poses.hpp"
+#include "scenes/film/poses.hpp"
 
 #include <algorithm>
 

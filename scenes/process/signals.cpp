@@ -1,4 +1,4 @@
-#include "scenes/signals.hpp"
+#include "scenes/process/signals.hpp"
 
 #include <unistd.h>
 
