@@ -141,14 +141,12 @@ ExtremeCase spinning(std::string name, const Vec4& size, const Bivector& omega, 
             }};
 }
 
-/// Forty spheres in a closed box of six planes, e = 1: a hundred thousand steps.
+/// Forty spheres in a closed box of eight planes, e = 1: a hundred thousand steps.
 ExtremeCase bouncing() {
     return {"restitution 1, 10^5 steps", [](PhysicsSettings settings) -> Measurements {
                 settings.gravity.setZero();
                 Bodies bodies;
-                for (int axis = 0; axis < 4; ++axis)
-                    for (const double side : {-1.0, 1.0})
-                        add(bodies, plane_type(side * Vec4::Unit(axis), -2, 0, 1), Vec4::Zero());
+                add_walls(bodies, {0, 1, 2, 3}, 2, 0, 1);
                 std::mt19937_64 engine(3);
                 std::uniform_real_distribution<> along(-2, 2);
                 for (int i = 0; i < 40; ++i) {
@@ -172,9 +170,7 @@ ExtremeCase bouncing() {
 ExtremeCase resting_spheres() {
     return {"10^4 spheres at rest for 60 s", [](PhysicsSettings settings) {
                 Bodies bodies = floor_and();
-                for (const int axis : {0, 2, 3})
-                    for (const double side : {-1.0, 1.0})
-                        add(bodies, plane_type(side * Vec4::Unit(axis), -5, 0.5, 0), Vec4::Zero());
+                add_walls(bodies, {0, 2, 3}, 5, 0.5);
                 bodies.types.push_back(sphere_type(0.5, 1, 0.5, 0));
                 for (int i = 0; i < 10000; ++i)
                     add(bodies, static_cast<std::uint32_t>(bodies.types.size() - 1),

@@ -166,7 +166,7 @@ const Heap& heap_of(int count) {
     if (found != heaps.end()) return found->second;
     parallel::Threads threads(parallel::granted_cores());
     const int across = count < 1000 ? 4 : 8;
-    parallel::ParallelWorld world(spheres_above_floor(count, across), PhysicsSettings{});
+    parallel::ParallelWorld world(heap_of_spheres(count, across), PhysicsSettings{});
     threads.run([&] {
         for (int i = 0; i < 480; ++i) world.step(kStep);
     });
@@ -246,7 +246,8 @@ void broad_phase(State& state) {
     parallel::SortAndSweep sort_and_sweep;
     parallel::Threads threads(1);
     threads.run([&] {
-        for (auto _ : state) sort_and_sweep.find_pairs(found.simulation, found.step.bounds, pairs);
+        for (auto _ : state)
+            sort_and_sweep.overlapping_pairs(found.simulation, found.step.bounds, pairs);
     });
     report_ns_per(state, "body", count);
     state.counters["pairs_per_body"] = static_cast<double>(pairs.size()) / count;

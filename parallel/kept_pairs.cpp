@@ -19,7 +19,7 @@ constexpr double kPart = 0.1, kSteps = 16;
 
 }  // namespace
 
-void KeptPairs::find_pairs(const Simulation& simulation, StepData& step) {
+void KeptPairs::refresh(const Simulation& simulation, StepData& step) {
     if (!holds(step)) search(simulation, step);
     choose_pairs(simulation, step);
 }
@@ -59,7 +59,7 @@ void KeptPairs::search(const Simulation& simulation, const StepData& step) {
             large_[i].radius += std::min(kPart * type.radius + way, type.radius);
         }
     });
-    sort_and_sweep_.find_pairs(simulation, large_, candidates_);
+    sort_and_sweep_.overlapping_pairs(simulation, large_, candidates_);
     held_ = true;
     ++searches_;
 }

@@ -8,7 +8,8 @@
 
 namespace tesserae::parallel {
 
-/// The same pairs as core's find_pairs(), from a list of candidates that lasts for several steps.
+/// The same pairs as core's test_all_pairs(), from a list of candidates that lasts for several
+/// steps.
 ///
 /// A search is made with balls that are larger than the bodies' bounds. While every body's bounds
 /// lie within its larger ball, two that overlap are among the pairs then found, and only these are
@@ -17,7 +18,7 @@ namespace tesserae::parallel {
 class KeptPairs {
   public:
     /// step.pairs, from step.bounds.
-    void find_pairs(const Simulation& simulation, StepData& step);
+    void refresh(const Simulation& simulation, StepData& step);
 
     /// step.pairs again, from bounds that are the same, after bodies woke.
     void choose_pairs(const Simulation& simulation, StepData& step);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "core/counting_sort.hpp"
 #include "core/dynamics/stages/pairs.hpp"
 
 namespace tesserae::parallel {
@@ -49,8 +49,9 @@ double padded(const Bounds& bounds) {
 
 }  // namespace
 
-void SortAndSweep::find_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
-                              std::vector<BodyPair>& pairs) {
+void SortAndSweep::overlapping_pairs(const Simulation& simulation,
+                                     const std::vector<Bounds>& bounds,
+                                     std::vector<BodyPair>& pairs) {
     bounded_.clear();
     unbounded_.clear();
     for (BodyId id = 0; id < simulation.bodies.size(); ++id)
@@ -60,6 +61,10 @@ void SortAndSweep::find_pairs(const Simulation& simulation, const std::vector<Bo
     choose_levels(bounds);
     sort_items(simulation, bounds);
     list_cells();
+    find_first_cells();
+    // Ends, so that all of the last cell and of the last level lies before the next one.
+    levels_.push_back({std::numeric_limits<int>::max(), 0, 0, cells_.size()});
+    cells_.push_back({std::numeric_limits<std::uint64_t>::max(), entries_.size()});
     pair_lists_.collect(
         kInRanges, items_.size(), kGrain,
         [&](Range items, std::vector<BodyPair>& list) {
@@ -167,14 +172,14 @@ void SortAndSweep::list_cells() {
     for (std::size_t i = 0; i < entries_.size(); ++i)
         if (i == 0 || entries_[i].cell != entries_[i - 1].cell)
             cells_.push_back({entries_[i].cell, i});
-    const std::size_t count = cells_.size();
+}
+
+void SortAndSweep::find_first_cells() {
     for (std::size_t k = 0; k < levels_.size(); ++k)
         levels_[k].first = static_cast<std::size_t>(
             std::lower_bound(cells_.begin(), cells_.end(), std::uint64_t{k} << (3 * kBits),
                              [](const Cell& c, std::uint64_t cell) { return c.cell < cell; }) -
             cells_.begin());
-    cells_.push_back({std::numeric_limits<std::uint64_t>::max(), entries_.size()});
-    levels_.push_back({std::numeric_limits<int>::max(), 0, 0, count});
 }
 
 /// The pairs of which the first, by cell and then by lower end, is in the range.
@@ -317,17 +322,14 @@ void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
 
 /// By counting each body's pairs, and then each body's by their second.
 void SortAndSweep::sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted) {
-    end_.assign(bodies + 1, 0);
-    for (const BodyPair& pair : found_) ++end_[pair.a + 1];
-    std::partial_sum(end_.begin(), end_.end(), end_.begin());
     sorted.resize(found_.size());
-    for (const BodyPair& pair : found_) sorted[end_[pair.a]++] = pair;
+    counting_sort(
+        found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first_,
+        [&](std::size_t i, std::size_t place) { sorted[place] = found_[i]; });
     for_each_range(bodies, kGrain, [&](Range range) {
-        for (std::size_t a = range.begin; a < range.end; ++a) {
-            const std::size_t begin = a == 0 ? 0 : end_[a - 1];
-            std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
-                      sorted.begin() + static_cast<std::ptrdiff_t>(end_[a]));
-        }
+        for (std::size_t a = range.begin; a < range.end; ++a)
+            std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first_[a]),
+                      sorted.begin() + static_cast<std::ptrdiff_t>(first_[a + 1]));
     });
 }
 

@@ -29,8 +29,8 @@ class SortAndSweep {
     /// @param bounds   of every body
     /// @param pairs    becomes, ascending, all pairs that overlap and one of which contacts can
     ///                 move, and a few that miss each other by less than rounding
-    void find_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
-                    std::vector<BodyPair>& pairs);
+    void overlapping_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
+                           std::vector<BodyPair>& pairs);
 
   private:
     struct Level {
@@ -68,6 +68,7 @@ class SortAndSweep {
     std::uint64_t coordinate(const Level& level, int cut, double x) const;
     void sort_items(const Simulation& simulation, const std::vector<Bounds>& bounds);
     void list_cells();
+    void find_first_cells();
     void sweep(Range items, std::vector<BodyPair>& pairs) const;
     Box beside(std::uint64_t cell) const;
     Box reached(Range items, const Level& level) const;
@@ -90,7 +91,7 @@ class SortAndSweep {
     std::vector<Cell> cells_;     ///< those that hold bodies, ascending, and the end of items_
     ChunkedList<BodyPair> pair_lists_;
     std::vector<BodyPair> found_;
-    std::vector<std::size_t> end_;  ///< of each body's pairs, as their first
+    std::vector<std::size_t> first_;  ///< of each body's pairs, as their first, and an end
 };
 
 }  // namespace tesserae::parallel

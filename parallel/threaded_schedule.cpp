@@ -17,7 +17,7 @@ bool ThreadedSchedule::any_range(std::size_t count, std::size_t grain,
 }
 
 void ThreadedSchedule::find_pairs(const Simulation& simulation, StepData& step) {
-    kept_pairs_.find_pairs(simulation, step);
+    kept_pairs_.refresh(simulation, step);
 }
 
 void ThreadedSchedule::choose_pairs(const Simulation& simulation, StepData& step) {

@@ -88,9 +88,7 @@ Experiment mixed_pile(const Knobs& knobs) {
     constexpr double kDuration = 0.4;
     static const Bodies bodies = [] {
         Bodies b = floor_of(0.5, 0);
-        for (int axis : {0, 2, 3})
-            for (double side : {-1.0, 1.0})
-                add(b, plane_type(side * Vec4::Unit(axis), -1.2, 0.5, 0), Vec4::Zero());
+        add_walls(b, {0, 2, 3}, 1.2, 0.5);
         std::mt19937_64 engine(9);
         std::uniform_real_distribution<> part(-1, 1);
         for (int i = 0; i < 40; ++i) {

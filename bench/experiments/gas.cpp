@@ -21,9 +21,7 @@ constexpr double kDuration = 9.5;  ///< [s]
 Bodies gas_in_box() {
     Bodies bodies;
     const double wall = 0.5 * kInside + kBall;
-    for (int axis = 0; axis < 4; ++axis)
-        for (double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), -wall, 0, 1), Vec4::Zero());
+    add_walls(bodies, {0, 1, 2, 3}, wall, 0, 1);
     bodies.types.push_back(sphere_type(kBall, 1, 0, 1));
     std::mt19937_64 engine(11);
     std::vector<int> places(5 * 5 * 5 * 5);

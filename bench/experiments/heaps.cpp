@@ -80,10 +80,8 @@ Experiment heap_of_capsules(const Knobs& knobs) {
     constexpr double kWall = 1.3;
     const auto settings = settings_of(3, knobs, kDown);
     Bodies bodies = floor_of(0.5, 0);
-    for (int axis : {0, 2, 3})
-        for (double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), axis == 3 ? -0.5 : -kWall, 0.5, 0),
-                Vec4::Zero());
+    add_walls(bodies, {0, 2}, kWall, 0.5);
+    add_walls(bodies, {3}, 0.5, 0.5);
     BodyType capsule;
     capsule.shape = Hypercapsule{0.25, 0.5};
     bodies.types.push_back(capsule);

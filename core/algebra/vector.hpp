@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/simd/simd.hpp"
+
 namespace tesserae {
 
 /// A point or direction of 4D space; axes x, y, z, w.
@@ -14,8 +16,7 @@ using Mat4 = Eigen::Matrix4d;
 /// The vector of four numbers that were just computed, put together in registers. The constructor
 /// stores them one by one, and to read them back as one vector stalls for a dozen cycles.
 inline Vec4 assembled(double x, double y, double z, double w) {
-    using Four = double __attribute__((vector_size(4 * sizeof(double))));
-    const Four four = {x, y, z, w};
+    const simd::Double4 four = {x, y, z, w};
     Vec4 v;
     std::memcpy(v.data(), &four, sizeof four);
     return v;

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
+
+#include "core/simd/simd.hpp"
 
 namespace tesserae {
 namespace {
 
-using Four = double __attribute__((vector_size(4 * sizeof(double))));
-using FourBits = long long __attribute__((vector_size(4 * sizeof(long long))));
+using namespace simd;
+using Four = Double4;
 
 Four four_of(const Vec4& v) {
     Four four;
@@ -111,31 +110,7 @@ double ray_exit(const Hyperbox& shape, const Vec4& origin, const Vec4& direction
 
 namespace {
 
-Four all_four(double x) { return Four{x, x, x, x}; }
-/// The larger of both, the smaller of both; b where one is no number.
-Four larger(Four a, Four b) { return a > b ? a : b; }
-Four smaller(Four a, Four b) { return a < b ? a : b; }
-Four part_of(Four v, FourBits where) { return where ? v : Four{}; }
-double largest(Four v) {
-    v = larger(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
-    return std::max(v[0], v[1]);
-}
-double smallest(Four v) {
-    v = smaller(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
-    return std::min(v[0], v[1]);
-}
-double sum(Four v) {
-    v += __builtin_shufflevector(v, v, 2, 3, 0, 1);
-    return v[0] + v[1];
-}
-/// Bit i is set where all bits of v[i] are.
-int mask(FourBits v) {
-#ifdef __AVX__
-    return _mm256_movemask_pd(reinterpret_cast<Four>(v));
-#else
-    return static_cast<int>((v[0] & 1) | (v[1] & 2) | (v[2] & 4) | (v[3] & 8));
-#endif
-}
+Four part_of(Four v, Mask4 where) { return where ? v : Four{}; }
 
 /// A box as seen from a ray's start, every axis turned so that the start is on its positive side.
 /// As a function of s = 1/t the ratio f(t)/t is the norm of the positive ones among the eight
@@ -145,13 +120,13 @@ int mask(FourBits v) {
 class BoxView {
   public:
     BoxView(Four half, Four origin, Four direction) {
-        const FourBits turned = origin < 0;
+        const Mask4 turned = origin < 0;
         heading_ = turned ? -direction : direction;
         const Four from_centre = turned ? -origin : origin;
         near_ = from_centre - half, far_ = from_centre + half;
-        scale_ = largest(far_);
+        scale_ = largest_lane(far_);
     }
-    double nearest_face() const { return largest(near_); }
+    double nearest_face() const { return largest_lane(near_); }
     /// The lengths involved.
     double scale() const { return scale_; }
 
@@ -159,8 +134,8 @@ class BoxView {
         // A face that the start is on counts as just ahead of it or behind, so that no quotient is
         // 0/0.
         constexpr double kLeast = 1e-300;
-        near_ = larger(near_, -near_) < kLeast ? all_four(kLeast) : near_;
-        far_ = larger(far_, all_four(kLeast));
+        near_ = larger(near_, -near_) < kLeast ? all_lanes(kLeast) : near_;
+        far_ = larger(far_, all_lanes(kLeast));
         per_near_ = 1 / near_, per_far_ = 1 / far_;
 
         const double first = 1 / range.limit;
@@ -180,9 +155,9 @@ class BoxView {
     /// Where from `first` on no function is above the level.
     Interval below(double level, double first) const {
         const Four falls = (-level - heading_) * per_far_, rises = (level - heading_) * per_near_;
-        const FourBits ahead = near_ > 0;
-        return {std::max(first, largest(larger(falls, ahead ? falls : rises))),
-                smallest(ahead ? rises : all_four(kMiss))};
+        const Mask4 ahead = near_ > 0;
+        return {std::max(first, largest_lane(larger(falls, ahead ? falls : rises))),
+                smallest_lane(ahead ? rises : all_lanes(kMiss))};
     }
 
     /// Half the square of f(t)/t outside the box, and its derivatives: a parabola between the zeros
@@ -193,11 +168,12 @@ class BoxView {
     };
     Square square_at(double s) const {
         const Four rising = heading_ + s * near_, falling = -heading_ - s * far_;
-        const FourBits is_up = rising > 0, is_down = falling > 0;
+        const Mask4 is_up = rising > 0, is_down = falling > 0;
         const Four up = part_of(rising, is_up), down = part_of(falling, is_down);
-        return {std::sqrt(sum(up * up + down * down)), sum(up * near_ - down * far_),
-                sum(part_of(near_ * near_, is_up) + part_of(far_ * far_, is_down)),
-                mask(is_up) | mask(is_down) << 4};
+        return {std::sqrt(sum_of_lanes(up * up + down * down)),
+                sum_of_lanes(up * near_ - down * far_),
+                sum_of_lanes(part_of(near_ * near_, is_up) + part_of(far_ * far_, is_down)),
+                lanes_set(is_up) | lanes_set(is_down) << 4};
     }
     Rim rim_of_passing(double first, const Interval& inside) const;
 
@@ -208,10 +184,10 @@ class BoxView {
     /// @param side   of several the one with the least slope (1) or the greatest (-1)
     Line largest_at(double s, double side) const {
         const Four rising = heading_ + s * near_, falling = -heading_ - s * far_;
-        const double value = largest(larger(rising, falling));
-        const Four near = rising == value ? side * near_ : all_four(kMiss);
-        const Four far = falling == value ? -side * far_ : all_four(kMiss);
-        return {s, value, side * smallest(smaller(near, far))};
+        const double value = largest_lane(larger(rising, falling));
+        const Four near = rising == value ? side * near_ : all_lanes(kMiss);
+        const Four far = falling == value ? -side * far_ : all_lanes(kMiss);
+        return {s, value, side * smallest_lane(smaller(near, far))};
     }
     Rim rim_of_entering(const Interval& inside) const;
 

@@ -1,32 +1,10 @@
 #pragma once
 
+#include <concepts>
 #include <limits>
 
 #include "core/algebra/vector.hpp"
 
-// What every shape's room provides, for a shape S in its own body frame (a hyperplane: in the
-// world):
-//
-//   static constexpr const char* S::kName   as in scene files
-//   static constexpr bool S::kBounded       false: infinite, never moves, has no mass
-//   S::parameters(self, visit)              calls visit(key, member, Rule) for every parameter
-//   void complete(S&)                       derived values, once the parameters passed their rules
-//   double volume(S)                        4D content [m^4]; infinite if not bounded
-//   Vec4 second_moments(S, double mass)     J_i = integral of rho x_i^2 [kg m^2]
-//   double bounding_radius(S)               of the sphere about the centre that holds the shape [m]
-//   Vec4 half_extents(S, Mat4 R)            of the box that holds the shape turned by R [m]
-//   double half_extent_along(S, Vec4 d)     max of |d . x| over the shape [m]
-//   Vec4 support(S, Vec4 d)                 a point of the shape that is farthest along d
-//   double signed_distance(S, Vec4 p)       exact inside and outside [m], 1-Lipschitz, convex
-//   Vec4 normal(S, Vec4 p)                  its gradient, unit; a fixed choice where it has none
-//   double ray_hit(S, Vec4 o, Vec4 d)       closed form: first t >= 0 with o + t d in the shape (0
-//                                           if o is inside), kMiss if there is none; d unit
-//   double ray_exit(S, Vec4 o, Vec4 d)      closed form: last t >= 0 with o + t d in the shape, 0
-//                                           if there is none, kMiss if it never leaves; d unit;
-//                                           o in the shape or, to rounding, on its surface
-//   Rim rim(S, o, d, RimRange)              by what angle the ray misses the shape; d unit
-//
-// No finite input gives a NaN.
 namespace tesserae {
 
 /// What a shape's parameter must be, beside finite.
@@ -72,5 +50,52 @@ constexpr double kSurfaceDepth = 1e-9;
 inline Rim rim_from_inside(double distance, double slope, double scale) {
     return {distance >= -kSurfaceDepth * scale ? slope : -1};
 }
+
+/// Accepts what S::parameters hands out.
+struct AnyParameter {
+    template <class T>
+    void operator()(const char* key, T& member, Rule rule) const;
+};
+
+/// What every shape's room provides, for a shape S in its own body frame (a hyperplane: in the
+/// world). No finite input gives a NaN.
+template <class S>
+concept ShapeRoom = requires(S& own, const S& s, double mass, const Mat4& turn, const Vec4& point,
+                             const Vec4& direction, const RimRange& range) {
+    /// As in scene files.
+    { S::kName } -> std::convertible_to<const char*>;
+    /// False: infinite, never moves, has no mass.
+    { S::kBounded } -> std::convertible_to<bool>;
+    /// Calls visit(key, member, Rule) for every parameter, of a constant shape too.
+    S::parameters(own, AnyParameter{});
+    S::parameters(s, AnyParameter{});
+    { s == s } -> std::same_as<bool>;
+    /// Derived values, once the parameters passed their rules.
+    { complete(own) } -> std::same_as<void>;
+    /// 4D content [m^4]; infinite if not bounded.
+    { volume(s) } -> std::same_as<double>;
+    /// J_i = integral of rho x_i^2 [kg m^2].
+    { second_moments(s, mass) } -> std::same_as<Vec4>;
+    /// Of the sphere about the centre that holds the shape [m].
+    { bounding_radius(s) } -> std::same_as<double>;
+    /// Of the box that holds the shape turned by a rotation [m].
+    { half_extents(s, turn) } -> std::same_as<Vec4>;
+    /// Max of |direction . x| over the shape [m].
+    { half_extent_along(s, direction) } -> std::same_as<double>;
+    /// A point of the shape that is farthest along the direction.
+    { support(s, direction) } -> std::same_as<Vec4>;
+    /// Exact inside and outside [m], 1-Lipschitz, convex: see kDistanceAccuracy.
+    { signed_distance(s, point) } -> std::same_as<double>;
+    /// Its gradient, unit; a fixed choice where it has none.
+    { normal(s, point) } -> std::same_as<Vec4>;
+    /// Closed form: first t >= 0 with point + t direction in the shape (0 if the point is inside),
+    /// kMiss if there is none; direction unit: see kRayAccuracy.
+    { ray_hit(s, point, direction) } -> std::same_as<double>;
+    /// Closed form: last t >= 0 with point + t direction in the shape, 0 if there is none, kMiss if
+    /// it never leaves; direction unit; the point in the shape or, to rounding, on its surface.
+    { ray_exit(s, point, direction) } -> std::same_as<double>;
+    /// By what angle the ray misses the shape; direction unit.
+    { rim(s, point, direction, range) } -> std::same_as<Rim>;
+};
 
 }  // namespace tesserae

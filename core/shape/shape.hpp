@@ -9,9 +9,14 @@
 
 namespace tesserae {
 
+/// The shape itself; an error that names what is missing where its room is not complete.
+template <ShapeRoom S>
+using Complete = S;
+
 /// The shape list: a new shape is its room, its pair files and one entry here. Code that works on
 /// any shape visits it.
-using Shape = std::variant<Hypersphere, Hypercapsule, Hyperbox, Hyperplane>;
+using Shape = std::variant<Complete<Hypersphere>, Complete<Hypercapsule>, Complete<Hyperbox>,
+                           Complete<Hyperplane>>;
 
 inline const char* name_of(const Shape& shape) {
     return std::visit([](const auto& s) { return s.kName; }, shape);

@@ -16,17 +16,9 @@ namespace {
 
 using namespace tesserae::testing;
 
-/// A pile of 6^4 spheres put down touching between walls, which is one large island, beside stacks
-/// of two boxes, which are many small ones.
+/// One large island, beside stacks of two boxes, which are many small ones.
 Bodies resting_bodies() {
-    Bodies bodies;
-    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    for (const int axis : {2, 3})
-        for (const double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), -3, 0.5));
-    for (int i = 0; i < 1296; ++i)
-        add(bodies, sphere_type(0.5, 1, 0.5),
-            {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+    Bodies bodies = packed_spheres([](int) { return sphere_type(0.5, 1, 0.5); });
     for (int i = 0; i < 20; ++i)
         add(bodies, box_type(Vec4::Ones(), 10), {10 + 2.0 * (i / 2), 0.5 + i % 2, 0, 0});
     return bodies;

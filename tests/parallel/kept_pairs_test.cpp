@@ -56,9 +56,9 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
                 if (engine() % 4 == 0 && simulation.type_of(id).movable) step.asleep[id] = id;
             advance_first_half(simulation, step, all);
             update_bounds(simulation, step, all);
-            threads.run([&] { kept.find_pairs(simulation, step); });
+            threads.run([&] { kept.refresh(simulation, step); });
             const std::vector<BodyPair> found = step.pairs;
-            tesserae::find_pairs(simulation, step);
+            test_all_pairs(simulation, step);
             ASSERT_EQ(found, step.pairs) << speed << " m/s, step " << i;
             pairs += found.size();
 

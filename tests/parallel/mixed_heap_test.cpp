@@ -72,17 +72,9 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSoftSubsteps) {
     expect_serial_bits(mixed_heap(), soft(), 100, serial);
 }
 
-/// A pile of 5^4 spheres put down touching, which is one island with enough contacts to be
-/// coloured.
+/// One island, with enough contacts to be coloured.
 TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
-    Bodies bodies;
-    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    for (const int axis : {0, 2, 3})
-        for (const double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), -3, 0.5));
-    for (int i = 0; i < 1296; ++i)
-        add(bodies, sphere_type(0.5, 1 + i % 3, 0.5),
-            {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+    const Bodies bodies = packed_spheres([](int i) { return sphere_type(0.5, 1 + i % 3, 0.5); });
     for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
         PhysicsSettings settings = soft();
         settings.solver = solver;

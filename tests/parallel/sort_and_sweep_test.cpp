@@ -35,8 +35,8 @@ void check(const Bodies& bodies, SortAndSweep& sort_and_sweep, Threads& threads)
     const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
     StepData step = prepared(simulation);
     std::vector<BodyPair> found, exact;
-    threads.run([&] { sort_and_sweep.find_pairs(simulation, step.bounds, found); });
-    tesserae::find_pairs(simulation, step);
+    threads.run([&] { sort_and_sweep.overlapping_pairs(simulation, step.bounds, found); });
+    test_all_pairs(simulation, step);
     // What it finds beyond that misses by rounding: 1e-12 of a radius, 1e-13 of the place.
     for (const auto [a, b] : found) {
         if (is_pair(simulation, step, a, b)) exact.push_back({a, b});
@@ -109,7 +109,7 @@ TEST(SortAndSweep, FindsBallsThatOverlapByRounding) {
                                             {(0.1 + 0.2) * Vec4::Unit(axis), 0.2}};
         ASSERT_TRUE(overlap(bounds[0], bounds[1]));
         std::vector<BodyPair> pairs;
-        threads.run([&] { sort_and_sweep.find_pairs(simulation, bounds, pairs); });
+        threads.run([&] { sort_and_sweep.overlapping_pairs(simulation, bounds, pairs); });
         EXPECT_EQ(pairs, (std::vector<BodyPair>{{0, 1}})) << axis;
     }
 }

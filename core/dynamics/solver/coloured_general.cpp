@@ -136,8 +136,8 @@ template <class F>
     const F yz = K[1] * K[2] - K[0] * K[4], zz = K[0] * K[3] - K[1] * K[1];
     const F determinant = K[0] * xx + K[1] * xy + K[2] * xz;
     const F mean = (K[0] + K[3] + K[5]) / (F{} + 3.0f);
-    const F norm = root_of((K[0] * K[0] + K[3] * K[3] + K[5] * K[5]) +
-                           (F{} + 2.0f) * (K[1] * K[1] + K[2] * K[2] + K[4] * K[4]));
+    const F norm = square_root((K[0] * K[0] + K[3] * K[3] + K[5] * K[5]) +
+                               (F{} + 2.0f) * (K[1] * K[1] + K[2] * K[2] + K[4] * K[4]));
     const auto yields = mean > rounding;
     const auto inverts = determinant > kLeastDeterminant * (mean * mean * mean);
     slide = yields ? one / norm : F{};
@@ -158,7 +158,7 @@ template <bool kFriction, bool kUneven, class F>
     // h along n - g w, which is never short.
     LaneVec4<F> h = load(lane, points[0].normal);
     h[3] = h[3] > F{} ? h[3] + one : h[3] - one;
-    const F scale = root_of((F{} + 2.0f) / dot(h, h));
+    const F scale = square_root((F{} + 2.0f) / dot(h, h));
     const Frame<F> frame(scale * h);
     store(lane, frame.h, pair_frame.h);
 
@@ -245,7 +245,7 @@ template <bool kFriction, bool kUneven, class F>
             tangent_change = tangent - old;
         }
         pair.apply(r_a, r_b, frame.world(tangent_change, change));
-        if (sweep.last) left = greater_of(left, velocity_left(lane, row.along, change));
+        if (sweep.last) left = larger(left, velocity_left(lane, row.along, change));
     }
     pair.store();
     return left;
@@ -280,7 +280,7 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
     float most = 0;
     for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
         const auto left = solve_points<kFriction, kUneven>(stage, lane, batch, sweep);
-        if (sweep.last) most = std::max(most, greatest_lane(left));
+        if (sweep.last) most = std::max(most, largest_lane(left));
     });
     return most;
 }

@@ -43,9 +43,11 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
         points.along[lane]);
 }
 
-/// The friction coefficient as a float whose square is one too: 1e36 of at most 3e38.
+/// The largest friction coefficient in float: its square, 1e36, is one too, of at most 3e38.
+constexpr double kLargestFloatFriction = 1e18;
+
 inline float float_friction(const Simulation& simulation, const Contact& c) {
-    return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), 1e18));
+    return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), kLargestFloatFriction));
 }
 
 template <class F>
@@ -85,7 +87,7 @@ template <class F>
     const F target = lane.load(relax ? row.relax_target : row.target);
     impulse = old + lane.load(row.mass) * (target - v);
     if (soft && !relax) impulse = lane.load(row.keep) * impulse;
-    impulse = greater_of(impulse, F{});
+    impulse = larger(impulse, F{});
     lane.store(impulse, row.impulse);
     return impulse - old;
 }
@@ -94,7 +96,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> clamped(const LaneVec4<F>& impulse, F most) {
     const F squared = dot(impulse, impulse);
-    const F scale = squared > most * most ? most / root_of(squared) : F{} + 1.0f;
+    const F scale = squared > most * most ? most / square_root(squared) : F{} + 1.0f;
     return scale * impulse;
 }
 
@@ -102,7 +104,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline F velocity_left(const Lane<F>& lane, const NormalRow& row, F change) {
     const F mass = lane.load(row.mass);
-    return mass > F{} ? magnitude_of(change) / mass : F{};
+    return mass > F{} ? magnitude(change) / mass : F{};
 }
 
 /// Calls work(Lane<F>, batch) for all lanes of the batches.

@@ -118,7 +118,7 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
     float most = 0;
     for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
         const auto left = solve_batch<kFriction>(stage, lane, batch, sweep);
-        if (sweep.last) most = std::max(most, greatest_lane(left));
+        if (sweep.last) most = std::max(most, largest_lane(left));
     });
     return most;
 }

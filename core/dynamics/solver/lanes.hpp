@@ -1,17 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstring>
 
 #include "core/dynamics/state/coloured_rows.hpp"
-
-#ifdef __AVX__
-#include <immintrin.h>
-#elif defined(__GNUC__)
-// Without AVX eight floats take two registers, and functions that hand them on are all inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
+#include "core/simd/simd.hpp"
 
 // The solver's kernels are templates over F, float or Float8: with the former they work on one lane
 // of a batch, with the latter on all eight. Every operation is rounded as IEEE says, element by
@@ -19,36 +12,8 @@
 
 namespace tesserae::lanes {
 
-using Float4 = float __attribute__((vector_size(16)));
-using Float8 = float __attribute__((vector_size(32)));
-
-// All functions here end up in one loop: a call would put the vectors into memory.
-
-[[gnu::always_inline]] inline float root_of(float x) { return std::sqrt(x); }
-[[gnu::always_inline]] inline Float8 root_of(Float8 x) {
-#ifdef __AVX__
-    return _mm256_sqrt_ps(x);
-#else
-    for (std::size_t i = 0; i < kLanes; ++i) x[i] = std::sqrt(x[i]);
-    return x;
-#endif
-}
-
-/// The greater one; b if they are equal or any is no number.
-template <class F>
-[[gnu::always_inline]] inline F greater_of(F a, F b) {
-    return a > b ? a : b;
-}
-template <class F>
-[[gnu::always_inline]] inline F magnitude_of(F a) {
-    return greater_of(a, -a);
-}
-[[gnu::always_inline]] inline float greatest_lane(float x) { return x; }
-[[gnu::always_inline]] inline float greatest_lane(Float8 x) {
-    float greatest = x[0];
-    for (std::size_t i = 1; i < kLanes; ++i) greatest = greater_of(greatest, x[i]);
-    return greatest;
-}
+using simd::Float4, simd::Float8;
+using simd::larger, simd::magnitude, simd::square_root, simd::largest_lane;
 
 /// Which lanes of a batch are worked on.
 template <class F>

@@ -4,8 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
+
+#include "core/counting_sort.hpp"
 
 namespace tesserae {
 namespace {
@@ -63,8 +64,11 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
 void Colouring::add(const Simulation& simulation, StepData& step, std::size_t island) {
     ColouredIslands& coloured = step.coloured;
     place_.resize(simulation.bodies.size(), 0);
-    find_pairs(simulation, step, island);
-    sort_pairs();
+    list_pairs(simulation, step, island);
+    sorted_.resize(pairs_.size());
+    counting_sort(
+        pairs_.size(), (kColours + 1) * kKinds, [&](std::size_t i) { return pairs_[i].bucket; },
+        start_, [&](std::size_t i, std::size_t place) { sorted_[place] = pairs_[i]; });
 
     std::uint32_t one_row_each = 0;
     for (std::size_t colour = 0; colour <= kColours; ++colour) {
@@ -111,9 +115,8 @@ std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, 
     return place;
 }
 
-void Colouring::find_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
+void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
     pairs_.clear();
-    start_.assign((kColours + 1) * kKinds + 1, 0);
     const Range places = step.islands.places(island);
     const std::span<const Contact> all(step.contacts);
     for (std::size_t i = places.begin; i < places.end;) {
@@ -130,7 +133,6 @@ void Colouring::find_pairs(const Simulation& simulation, StepData& step, std::si
         used_.resize(step.coloured.bodies.size(), 0);
         const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
         pair.bucket = static_cast<std::uint16_t>(colour_of(pair) * kKinds + kind);
-        ++start_[pair.bucket];
         pairs_.push_back(pair);
         i += points;
     }
@@ -146,15 +148,6 @@ int Colouring::colour_of(const Pair& pair) {
     a |= std::uint64_t{1} << colour;
     b |= std::uint64_t{1} << colour;
     return colour;
-}
-
-/// Counting sort by bucket, which keeps the order within each.
-void Colouring::sort_pairs() {
-    std::exclusive_scan(start_.begin(), start_.end(), start_.begin(), 0u);
-    sorted_.resize(pairs_.size());
-    for (const Pair& pair : pairs_) sorted_[start_[pair.bucket]++] = pair;
-    std::shift_right(start_.begin(), start_.end(), 1);
-    start_.front() = 0;
 }
 
 BatchRange Colouring::add_batches(Range pairs, std::uint32_t& rows,

@@ -30,10 +30,9 @@ class Colouring {
         std::uint16_t bucket;
         std::uint8_t points;
     };
-    void find_pairs(const Simulation& simulation, StepData& step, std::size_t island);
+    void list_pairs(const Simulation& simulation, StepData& step, std::size_t island);
     std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
     int colour_of(const Pair& pair);
-    void sort_pairs();
     BatchRange add_batches(Range pairs, std::uint32_t& rows, std::vector<Batch>& batches) const;
 
     std::vector<std::uint32_t> place_;  ///< of every body in ColouredIslands::bodies, or 0

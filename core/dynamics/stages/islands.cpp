@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/counting_sort.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {
@@ -64,17 +65,13 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     for (std::uint32_t& number : number_)
         if (number != kNone) number = count++;
 
-    // Counting sort of the contacts by island; it keeps their order within each.
     Islands& islands = step.islands;
-    islands.first.assign(count + 1, 0);
-    for (const BodyId root : member_) ++islands.first[number_[root] + 1];
-    std::partial_sum(islands.first.begin(), islands.first.end(), islands.first.begin());
     islands.contacts.resize(contacts.size());
-    for (std::uint32_t i = 0; i < contacts.size(); ++i)
-        islands.contacts[islands.first[number_[member_[i]]]++] = i;
-    // Filling moved each start to its island's end: shift them back.
-    std::shift_right(islands.first.begin(), islands.first.end(), 1);
-    islands.first.front() = 0;
+    counting_sort(
+        contacts.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,
+        [&](std::size_t i, std::size_t place) {
+            islands.contacts[place] = static_cast<std::uint32_t>(i);
+        });
 }
 
 }  // namespace tesserae

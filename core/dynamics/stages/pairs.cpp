@@ -27,7 +27,7 @@ bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyI
     return true;
 }
 
-void find_pairs(const Simulation& simulation, StepData& step) {
+void test_all_pairs(const Simulation& simulation, StepData& step) {
     step.pairs.clear();
     const auto count = static_cast<BodyId>(simulation.bodies.size());
     for (BodyId a = 0; a < count; ++a)

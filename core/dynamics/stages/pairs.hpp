@@ -19,6 +19,6 @@ bool reaches(const Bounds& bounded, const Shape& unbounded);
 bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
 
 /// step.pairs by testing every two bodies: the reference for faster ways.
-void find_pairs(const Simulation& simulation, StepData& step);
+void test_all_pairs(const Simulation& simulation, StepData& step);
 
 }  // namespace tesserae

@@ -21,11 +21,11 @@ bool Schedule::any_range(std::size_t count, std::size_t, FunctionRef<bool(Range)
 }
 
 void Schedule::find_pairs(const Simulation& simulation, StepData& step) {
-    tesserae::find_pairs(simulation, step);
+    test_all_pairs(simulation, step);
 }
 
 void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
-    tesserae::find_pairs(simulation, step);
+    test_all_pairs(simulation, step);
 }
 
 void Schedule::solve_islands(const Simulation& simulation, StepData& step) {

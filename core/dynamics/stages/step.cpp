@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -119,7 +120,9 @@ void end_substep(const Simulation& simulation, StepData& step) {
             all.push_back(*own);
         all.push_back(impulse);
     }
-    all.insert(all.end(), own, step.pushing.end());
+    // One by one, so that the list has room to grow: inserted at once it would have none, and be
+    // moved at each new contact.
+    std::copy(own, step.pushing.end(), std::back_inserter(all));
     step.recalled.swap(all);
 }
 

@@ -7,11 +7,11 @@
 
 #include "core/contact/manifold.hpp"
 #include "core/dynamics/state/bodies.hpp"
+#include "core/simd/simd.hpp"
 
 namespace tesserae {
 
-/// Floats that one instruction works on.
-constexpr std::size_t kLanes = 8;
+using simd::kLanes;
 
 struct alignas(32) Eight {
     std::array<float, kLanes> lane = {};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <numbers>
 #include <random>
 
@@ -76,12 +77,11 @@ inline void run(World& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
-/// Adds one body, of a type of its own.
-inline BodyId add(Bodies& bodies, const BodyType& type, const Vec4& position = Vec4::Zero(),
+/// Adds a body of a type that is there already.
+inline BodyId add(Bodies& bodies, std::uint32_t type, const Vec4& position,
                   const Vec4& velocity = Vec4::Zero(), const Bivector& omega = {},
                   const Rotor& rotor = {}) {
-    bodies.type.push_back(static_cast<std::uint32_t>(bodies.types.size()));
-    bodies.types.push_back(type);
+    bodies.type.push_back(type);
     bodies.position.push_back(position);
     bodies.rotor.push_back(rotor);
     bodies.velocity.push_back(velocity);
@@ -89,30 +89,62 @@ inline BodyId add(Bodies& bodies, const BodyType& type, const Vec4& position = V
     return static_cast<BodyId>(bodies.size() - 1);
 }
 
+/// Adds a body of a type of its own.
+inline BodyId add(Bodies& bodies, const BodyType& type, const Vec4& position = Vec4::Zero(),
+                  const Vec4& velocity = Vec4::Zero(), const Bivector& omega = {},
+                  const Rotor& rotor = {}) {
+    bodies.types.push_back(type);
+    return add(bodies, static_cast<std::uint32_t>(bodies.types.size() - 1), position, velocity,
+               omega, rotor);
+}
+
+/// Gives a body a type of its own.
+inline void give_type(Bodies& bodies, BodyId id, const BodyType& type) {
+    bodies.type[id] = static_cast<std::uint32_t>(bodies.types.size());
+    bodies.types.push_back(type);
+}
+
+/// Across each of these axes two planes that face each other, this far from the origin [m].
+inline void add_walls(Bodies& bodies, std::initializer_list<int> axes, double distance,
+                      double friction = 0, double restitution = 0) {
+    for (const int axis : axes)
+        for (const double side : {-1.0, 1.0})
+            add(bodies, plane_type(side * Vec4::Unit(axis), -distance, friction, restitution));
+}
+
 /// Spheres of three sizes above a floor between six walls, 4 across along x, z and w, 1.1 m apart,
 /// jittered: they fall into one heap.
 inline Bodies heap_of_spheres(int count, int across = 4) {
     Bodies bodies;
-    const double wall = 0.55 * across + 0.1;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5, 0.1));
-    for (int axis : {0, 2, 3})
-        for (double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), -wall, 0.5, 0.1));
-    const double radii[] = {0.3, 0.4, 0.5};
+    add_walls(bodies, {0, 2, 3}, 0.55 * across + 0.1, 0.5, 0.1);
+    const auto first_type = static_cast<std::uint32_t>(bodies.types.size());
+    for (const double radius : {0.3, 0.4, 0.5}) {
+        const double volume = 0.5 * pi * pi * std::pow(radius, 4);
+        bodies.types.push_back(sphere_type(radius, 1000 * volume, 0.5, 0.1));
+    }
     std::mt19937_64 engine(1);
     std::uniform_real_distribution<> jitter(-0.02, 0.02);
+    const double middle = 0.5 * (across - 1);
     for (int i = 0; i < count; ++i) {
-        const double middle = 0.5 * (across - 1);
-        const int layer = across * across * across;
-        Vec4 x{i % across - middle, 0.0, i / across % across - middle,
-               i / (across * across) % across - middle};
-        x[1] = 0.7 + i / layer;
+        Vec4 x{i % across - middle, 0.7 + i / (across * across * across),
+               i / across % across - middle, i / (across * across) % across - middle};
         x *= 1.1;
         for (int k = 0; k < 4; ++k) x[k] += jitter(engine);
-        const double radius = radii[i % 3];
-        const double volume = 0.5 * pi * pi * std::pow(radius, 4);
-        add(bodies, sphere_type(radius, 1000 * volume, 0.5, 0.1), x);
+        add(bodies, first_type + static_cast<std::uint32_t>(i % 3), x);
     }
+    return bodies;
+}
+
+/// A floor, and above it 6^4 spheres put down touching between walls: one large island.
+/// @param type_of   the type of the i-th
+template <class TypeOf>
+Bodies packed_spheres(const TypeOf& type_of) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    add_walls(bodies, {0, 2, 3}, 3, 0.5);
+    for (int i = 0; i < 6 * 6 * 6 * 6; ++i)
+        add(bodies, type_of(i), {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
     return bodies;
 }
 
@@ -120,13 +152,14 @@ inline Bodies heap_of_spheres(int count, int across = 4) {
 inline Bodies mixed_heap(int count = 90, int across = 3) {
     Bodies bodies = heap_of_spheres(count, across);
     for (BodyId id = 0; id < bodies.size(); ++id) {
-        BodyType& type = bodies.types[bodies.type[id]];
-        if (!is_bounded(type.shape)) continue;
+        if (!is_bounded(bodies.type_of(id).shape)) continue;
+        BodyType type = bodies.type_of(id);
         const double r = std::get<Hypersphere>(type.shape).radius;
         if (id % 3 == 0) type.shape = Hyperbox{{r, 1.2 * r, 1.1 * r, 0.8 * r}};
         if (id % 3 == 1) type.shape = Hypercapsule{0.5 * r, r};
         bodies.rotor[id] = exp({0.1 * id, 0.2, 0.05 * id, -0.1, 0.3, 0.02 * id});
         bodies.angular_velocity[id] = {1, -0.5, 0.3, 0.2, -1, 0.7};
+        give_type(bodies, id, type);
     }
     return bodies;
 }

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "tests/content.hpp"
 #include "tests/error_of.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -20,6 +21,7 @@ namespace tesserae {
 namespace {
 
 namespace fs = std::filesystem;
+using tesserae::testing::content;
 using tesserae::testing::error_of;
 
 class FileWriterTest : public ::testing::Test {
@@ -67,7 +69,7 @@ TEST_F(FileWriterTest, WritesWhatAStringInMemoryHolds) {
         }
         ASSERT_FALSE(fs::exists(path) && round == 0);
         writer.finish();
-        ASSERT_EQ(bytes_of(path), expected) << "round " << round;
+        ASSERT_EQ(content(path), expected) << "round " << round;
         ASSERT_FALSE(fs::exists(path.string() + ".partial"));
     }
 }
@@ -78,12 +80,12 @@ TEST_F(FileWriterTest, ReplacesAFileOnlyWhenFinished) {
     {
         FileWriter writer(path);
         writer.write("newer", 5);
-        EXPECT_EQ(bytes_of(path), "old");
+        EXPECT_EQ(content(path), "old");
     }
-    EXPECT_EQ(bytes_of(path), "old");
+    EXPECT_EQ(content(path), "old");
     EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
     write_file(path, "newer");
-    EXPECT_EQ(bytes_of(path), "newer");
+    EXPECT_EQ(content(path), "newer");
 }
 
 TEST_F(FileWriterTest, RefusesASecondWriter) {
@@ -96,7 +98,7 @@ TEST_F(FileWriterTest, RefusesASecondWriter) {
     });
     EXPECT_EQ(status, 7);
     writer.finish();
-    EXPECT_EQ(bytes_of(path), "first");
+    EXPECT_EQ(content(path), "first");
 }
 
 TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {
@@ -111,7 +113,7 @@ TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {
     ASSERT_EQ(fs::file_size(folder_ / "file.partial"), 200'000u);
     ASSERT_FALSE(fs::exists(path));
     write_file(path, "whole");
-    EXPECT_EQ(bytes_of(path), "whole");
+    EXPECT_EQ(content(path), "whole");
 }
 
 TEST_F(FileWriterTest, AFullDiskLeavesNothing) {
@@ -159,7 +161,7 @@ TEST_F(FileWriterTest, NamesThePathAndTheReason) {
         EXPECT_EQ(error.find(path.string() + ": "), 0u) << error;
         EXPECT_NE(error.find(reason), std::string::npos) << error;
     }
-    EXPECT_EQ(bytes_of(folder_ / "plain"), "x");
+    EXPECT_EQ(content(folder_ / "plain"), "x");
 }
 
 TEST_F(FileWriterTest, AFailedRenameLeavesNothing) {
@@ -196,9 +198,9 @@ TEST_F(FileWriterTest, ManyWritersOfOneFileLeaveOneWholeFile) {
         ::wait(&status);
         EXPECT_EQ(WEXITSTATUS(status), 7);
     }
-    const std::string content = bytes_of(path);
-    ASSERT_EQ(content.size(), 100'000u);
-    EXPECT_EQ(content.find_first_not_of(content[0]), std::string::npos);
+    const std::string bytes = content(path);
+    ASSERT_EQ(bytes.size(), 100'000u);
+    EXPECT_EQ(bytes.find_first_not_of(bytes[0]), std::string::npos);
     EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
 }
 

@@ -8,8 +8,7 @@ namespace {
 
 template <class S>
 struct ShapeBounds : ::testing::Test {};
-using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
-TYPED_TEST_SUITE(ShapeBounds, Bounded);
+TYPED_TEST_SUITE(ShapeBounds, BoundedShapes);
 
 /// A few roundings of a sum of five terms.
 constexpr double kBoundsRounding = 4e-15;

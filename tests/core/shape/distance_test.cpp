@@ -7,8 +7,7 @@ namespace {
 
 template <class S>
 struct ShapeDistance : ::testing::Test {};
-using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
-TYPED_TEST_SUITE(ShapeDistance, Bounded);
+TYPED_TEST_SUITE(ShapeDistance, BoundedShapes);
 
 constexpr int kPointsPerShape = 100;
 constexpr int kShapes = 60;

@@ -7,8 +7,7 @@ namespace {
 
 template <class S>
 struct ShapeMass : ::testing::Test {};
-using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
-TYPED_TEST_SUITE(ShapeMass, Bounded);
+TYPED_TEST_SUITE(ShapeMass, BoundedShapes);
 
 /// Sums over points of the shape: their number, x_i, x_i x_j and (x_i x_j)^2.
 struct Sums {

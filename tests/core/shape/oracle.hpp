@@ -1,8 +1,12 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 #include "core/shape/shape.hpp"
@@ -32,6 +36,15 @@ struct RandomGeometry {
         return Vec4(gauss(engine), gauss(engine), gauss(engine), gauss(engine)).normalized();
     }
 };
+
+/// The bounded ones of a list of shapes, as types of a test suite.
+template <class... S>
+auto bounded_of(const std::variant<S...>&) {
+    const auto types = []<class... B>(std::tuple<B...>) { return ::testing::Types<B...>{}; };
+    return types(std::tuple_cat(std::conditional_t<S::kBounded, std::tuple<S>, std::tuple<>>{}...));
+}
+/// A shape that joins the list joins every property suite.
+using BoundedShapes = decltype(bounded_of(Shape{}));
 
 /// FORMULAS 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho. Its
 /// distance is found by descent on the t_k one at a time, not by the rooms' clamping.

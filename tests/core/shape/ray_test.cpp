@@ -7,8 +7,7 @@ namespace {
 
 template <class S>
 struct ShapeRay : ::testing::Test {};
-using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
-TYPED_TEST_SUITE(ShapeRay, Bounded);
+TYPED_TEST_SUITE(ShapeRay, BoundedShapes);
 
 struct Line {
     LVec origin, direction;

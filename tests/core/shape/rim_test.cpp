@@ -7,8 +7,7 @@ namespace {
 
 template <class S>
 struct ShapeRim : ::testing::Test {};
-using Bounded = ::testing::Types<Hypersphere, Hypercapsule, Hyperbox>;
-TYPED_TEST_SUITE(ShapeRim, Bounded);
+TYPED_TEST_SUITE(ShapeRim, BoundedShapes);
 
 /// The definition, in long double: the least s f(1/s) over s >= 1/limit, a convex function of s, by
 /// golden section. Beyond s = 2/f(0) it is above 1, as f falls by no more than t.

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <sstream>
 #include <thread>
 
 namespace tesserae::scenes::testing {
@@ -50,13 +49,6 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
 std::string Folder::write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name, std::ios::binary) << text;
     return file(name);
-}
-
-std::string content(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
 }
 
 std::vector<std::string> files_below(const fs::path& folder) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/content.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tesserae::scenes::testing {
@@ -26,7 +27,7 @@ class Folder : public tesserae::testing::TemporaryFolder {
     std::string write(const std::string& name, const std::string& text) const;
 };
 
-std::string content(const std::filesystem::path& file);
+using tesserae::testing::content;
 
 /// All files below a folder, relative to it, ascending.
 std::vector<std::string> files_below(const std::filesystem::path& folder);

@@ -264,9 +264,7 @@ TEST(ColouredSolver, WorksAsWellFarAwayAndAtHighSpeed) {
 TEST(ColouredSolver, HoldsHeavyBodiesOnLightOnes) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    for (const int axis : {0, 2, 3})
-        for (const double side : {-1.0, 1.0})
-            add(bodies, plane_type(side * Vec4::Unit(axis), -1.05, 0.5));
+    add_walls(bodies, {0, 2, 3}, 1.05, 0.5);
     for (int i = 0; i < 40; ++i)
         add(bodies, sphere_type(0.5, i < 32 ? 1 : 1000, 0.5),
             {i % 2 - 0.5, i / 8 + 0.5, i / 2 % 2 - 0.5, i / 4 % 2 - 0.5});

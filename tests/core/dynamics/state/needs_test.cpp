@@ -90,7 +90,7 @@ TEST(Needs, NoContactTurnsASphereWithoutFriction) {
         // Every third one spins, every seventh is a box, which it does not leave in peace.
         for (BodyId id = 7; id < bodies.size(); ++id) {
             if (id % 3 == 0) bodies.angular_velocity[id] = {1, -2, 0.5, 0.1 * id, 3, 1};
-            if (id % 7 == 0) bodies.types[bodies.type[id]] = box_type({0.6, 0.5, 0.7, 0.6}, 100);
+            if (id % 7 == 0) give_type(bodies, id, box_type({0.6, 0.5, 0.7, 0.6}, 100));
         }
         World world(make_simulation(bodies, PhysicsSettings{}), coloured_from);
         run(world, 200);

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+// Several numbers at once, by the vector extension of gcc and clang: one instruction where the CPU
+// has AVX, several elsewhere. Every operation is rounded as IEEE says, element by element, so that
+// one lane gives the bits of a plain number; product_sum() alone does not.
+//
+// All functions are inlined: in a loop a call would put the vectors into memory.
+namespace tesserae::simd {
+
+/// Of a Float8.
+constexpr std::size_t kLanes = 8;
+
+using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
+using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
+using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
+/// What comparing Double4s gives.
+using Mask4 = long long __attribute__((vector_size(4 * sizeof(long long))));
+
+[[gnu::always_inline]] inline Float8 all_lanes(float x) { return Float8{x, x, x, x, x, x, x, x}; }
+[[gnu::always_inline]] inline Double4 all_lanes(double x) { return Double4{x, x, x, x}; }
+
+/// The larger of both; b where they are equal or one is no number.
+template <class V>
+[[gnu::always_inline]] inline V larger(V a, V b) {
+    return a > b ? a : b;
+}
+/// The smaller of both; b where they are equal or one is no number.
+template <class V>
+[[gnu::always_inline]] inline V smaller(V a, V b) {
+    return a < b ? a : b;
+}
+#ifdef __AVX__
+template <>
+[[gnu::always_inline]] inline Float8 larger(Float8 a, Float8 b) {
+    return _mm256_max_ps(a, b);
+}
+#endif
+template <class V>
+[[gnu::always_inline]] inline V magnitude(V a) {
+    return larger(a, -a);
+}
+
+[[gnu::always_inline]] inline float square_root(float x) { return std::sqrt(x); }
+[[gnu::always_inline]] inline Float8 square_root(Float8 x) {
+#ifdef __AVX__
+    return _mm256_sqrt_ps(x);
+#else
+    for (std::size_t i = 0; i < kLanes; ++i) x[i] = std::sqrt(x[i]);
+    return x;
+#endif
+}
+
+/// a * b + c, where the CPU can with one rounding: for bounds that are rounded outward.
+[[gnu::always_inline]] inline Float8 product_sum(Float8 a, Float8 b, Float8 c) {
+#ifdef __FMA__
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+
+// ---- from lanes to one number ----
+[[gnu::always_inline]] inline float largest_lane(float x) { return x; }
+[[gnu::always_inline]] inline float largest_lane(Float8 x) {
+    float largest = x[0];
+    for (std::size_t i = 1; i < kLanes; ++i) largest = larger(largest, x[i]);
+    return largest;
+}
+[[gnu::always_inline]] inline double largest_lane(Double4 v) {
+    v = larger(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
+    return v[0] < v[1] ? v[1] : v[0];
+}
+[[gnu::always_inline]] inline double smallest_lane(Double4 v) {
+    v = smaller(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
+    return v[1] < v[0] ? v[1] : v[0];
+}
+[[gnu::always_inline]] inline double sum_of_lanes(Double4 v) {
+    v += __builtin_shufflevector(v, v, 2, 3, 0, 1);
+    return v[0] + v[1];
+}
+
+// ---- sets of lanes, as bits ----
+/// Bit i is set where all bits of v[i] are.
+[[gnu::always_inline]] inline int lanes_set(Mask4 v) {
+#ifdef __AVX__
+    return _mm256_movemask_pd(reinterpret_cast<Double4>(v));
+#else
+    return static_cast<int>((v[0] & 1) | (v[1] & 2) | (v[2] & 4) | (v[3] & 8));
+#endif
+}
+/// Bit i is set where a[i] <= b[i].
+[[gnu::always_inline]] inline std::uint32_t not_above(Float8 a, Float8 b) {
+#ifdef __AVX__
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
+#else
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(a[i] <= b[i]) << i;
+    return bits;
+#endif
+}
+
+/// The numbers of the lanes whose bits are set, ascending, then zeros; by the bits.
+inline constexpr auto kLanesSet = [] {
+    std::array<std::array<std::uint8_t, kLanes>, 1 << kLanes> table{};
+    for (std::size_t bits = 0; bits < table.size(); ++bits)
+        for (std::uint8_t lane = 0, count = 0; lane < kLanes; ++lane)
+            if (bits >> lane & 1) table[bits][count++] = lane;
+    return table;
+}();
+
+/// Writes the lanes of v whose bits are set to `to`, one after the other, and anything after them:
+/// there must be room for all. Without a branch.
+/// @param v   eight numbers of four bytes
+[[gnu::always_inline]] inline void store_set(const void* v, std::uint32_t bits, void* to) {
+    const std::uint8_t* lanes = kLanesSet[bits].data();
+#ifdef __AVX2__
+    const __m256i at =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(lanes)));
+    const __m256i all = _mm256_loadu_si256(static_cast<const __m256i*>(v));
+    _mm256_storeu_si256(static_cast<__m256i*>(to), _mm256_permutevar8x32_epi32(all, at));
+#else
+    std::uint32_t from[kLanes], set[kLanes];
+    std::memcpy(from, v, sizeof from);
+    for (std::size_t i = 0; i < kLanes; ++i) set[i] = from[lanes[i]];
+    std::memcpy(to, set, sizeof set);
+#endif
+}
+
+}  // namespace tesserae::simd
