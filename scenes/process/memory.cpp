@@ -1,6 +1,7 @@
 #include "scenes/process/memory.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -54,7 +55,7 @@ std::uint64_t address_space_left() {
     std::ifstream in("/proc/self/statm");
     std::uint64_t pages = 0;
     in >> pages;
-    return left_of(limit.rlim_cur, pages * 4096);
+    return left_of(limit.rlim_cur, pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)));
 }
 
 }  // namespace
