@@ -27,10 +27,6 @@ constexpr int kMaxSteps = 200;                ///< the scene format's default
 constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/intersect.cpp
 constexpr std::array<int, 9> kSteps = {1, 2, 3, 4, 6, 8, 16, 64, 200};
 
-struct Ray {
-    Vec4 origin, direction;
-};
-
 /// A body about the origin and rays toward it, of which some miss.
 struct Target {
     Bodies bodies;
@@ -65,8 +61,7 @@ struct Target {
             const double reach = is_bounded(shape) ? 1.2 * placed.bodies[0].radius : 2;
             const Vec4 aim = reach * std::pow(unit(random), 0.25) * direction();
             rays.push_back({origin, (aim - origin).normalized()});
-            exact.push_back(
-                hit_distance(placed, 0, origin, rays.back().direction, kMiss, settings, stats));
+            exact.push_back(hit_distance(placed, 0, rays.back(), settings, stats));
         }
         settings.intersector = Intersector::kTrace;
     }
@@ -140,13 +135,12 @@ bool measure(const Shape& shape) {
     for (const int steps : kSteps) {
         target.settings.max_steps = steps;
         renderers = row(target, "max_steps", name, steps, [&](const Ray& r, FrameStats& stats) {
-            return hit_distance(target.placed, 0, r.origin, r.direction, kMiss, target.settings,
-                                stats);
+            return hit_distance(target.placed, 0, r, target.settings, stats);
         });
     }
     target.settings.intersector = Intersector::kAnalytic;
     row(target, "closed form", name, 0, [&](const Ray& r, FrameStats& stats) {
-        return hit_distance(target.placed, 0, r.origin, r.direction, kMiss, target.settings, stats);
+        return hit_distance(target.placed, 0, r, target.settings, stats);
     });
     bool is_same = true;
     std::visit(

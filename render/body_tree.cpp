@@ -18,6 +18,10 @@ constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 /// Part of a body's coordinates and size by which its bounds are widened: three times the rounding
 /// of a double to a float, and a million times what any hit is out by.
 constexpr double kWiden = 2e-7;
+/// Part of a ray origin's coordinates by which spheres count as wider for it. As floats they shift
+/// the ray by at most 2^-24 of their sum, a 33rd of this; a wider sphere only makes more
+/// candidates.
+constexpr double kOriginSlack = 2e-6;
 /// No slope is less than this: it keeps the inverse finite, and a ray leaves its place by less than
 /// the bounds' widening.
 constexpr double kLeast = 1e-18;
@@ -275,12 +279,17 @@ std::uint32_t BodyTreeBuilder::add_node(const Branch& branch) {
         collect(branch.halves[1], kLanes - first, children);
     }
     BodyTree::Node node{};
-    node.boxes.fill({all_lanes(kInfiniteFloat), all_lanes(-kInfiniteFloat)});
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            node.boxes.sides[BodyTree::Boxes::low(axis) + i] = kInfiniteFloat;
+            node.boxes.sides[BodyTree::Boxes::high(axis) + i] = -kInfiniteFloat;
+        }
     for (std::size_t i = 0; i < children.size(); ++i) {
         const Part& part = children[i]->part;
         for (std::size_t axis = 0; axis < 4; ++axis) {
-            node.boxes[axis][0][i] = part.box.low[static_cast<int>(axis)];
-            node.boxes[axis][1][i] = part.box.high[static_cast<int>(axis)];
+            node.boxes.sides[BodyTree::Boxes::low(axis) + i] = part.box.low[static_cast<int>(axis)];
+            node.boxes.sides[BodyTree::Boxes::high(axis) + i] =
+                part.box.high[static_cast<int>(axis)];
         }
     }
     const std::size_t index = tree_.nodes_.size();
@@ -309,17 +318,17 @@ std::uint32_t BodyTreeBuilder::add_leaf(const Part& part) {
 
 BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).build(); }
 
-BodyTree::Line BodyTree::line_of(const Vec4& origin, const Vec4& direction) {
+BodyTree::Line BodyTree::line_of(const Ray& ray) {
     // All four axes at once, and no branch: which side is first is a toss.
     using Doubles = double __attribute__((vector_size(4 * sizeof(double))));
     using Floats = float __attribute__((vector_size(4 * sizeof(float))));
     Doubles o, d;
-    std::memcpy(&o, origin.data(), sizeof o);
-    std::memcpy(&d, direction.data(), sizeof d);
+    std::memcpy(&o, ray.origin.data(), sizeof o);
+    std::memcpy(&d, ray.direction.data(), sizeof d);
     const Doubles least = {kLeast, kLeast, kLeast, kLeast};
     const auto is_forward = d > -least;
     const Doubles inverse = 1 / (is_forward ? (d > least ? d : least) : d);
-    const double slack = kWiden * origin.lpNorm<1>();
+    const double reach = ray.origin.lpNorm<1>(), slack = kWiden * reach;
     const Doubles shift = -o * inverse, widening = slack * (is_forward ? inverse : -inverse);
     Line line;
     const auto write = [](const Doubles& v, std::array<float, 4>& to) {
@@ -331,22 +340,23 @@ BodyTree::Line BodyTree::line_of(const Vec4& origin, const Vec4& direction) {
     write(inverse, line.inverse);
     write(shift - widening, line.enter_shift);
     write(shift + widening, line.leave_shift);
-    constexpr std::int64_t kSize = sizeof(Lanes);
-    using Offsets = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
-    const auto offsets =
-        (is_forward ? 0 : kSize) + decltype(is_forward){0, 2 * kSize, 4 * kSize, 6 * kSize};
-    const Offsets sides = __builtin_convertvector(offsets, Offsets);
+    using Sides = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
+    const decltype(is_forward) low = {Boxes::low(0), Boxes::low(1), Boxes::low(2), Boxes::low(3)};
+    const decltype(is_forward) high = {Boxes::high(0), Boxes::high(1), Boxes::high(2),
+                                       Boxes::high(3)};
+    const Sides sides = __builtin_convertvector(is_forward ? low : high, Sides);
     std::memcpy(line.enter_side.data(), &sides, sizeof sides);
-    line.slack = static_cast<float>(10 * slack);
+    line.slack = static_cast<float>(kOriginSlack * reach);
+    line.limit = rounded_up(ray.limit);
     return line;
 }
 
-BodyTree::Flare BodyTree::flare_of(const Vec4& origin, const Vec4& direction, const Cone& cone) {
-    const double slack = kWiden * origin.lpNorm<1>();
+BodyTree::Flare BodyTree::flare_of(const Ray& axis, const Cone& cone) {
+    const double reach = axis.origin.lpNorm<1>(), slack = kWiden * reach;
     const double tangent = cone.sine > 0 ? (1 + kWiden) * cone.sine / cone.cosine : 0;
     Flare flare;
     for (std::size_t i = 0; i < 4; ++i) {
-        const double o = origin[static_cast<int>(i)], d = direction[static_cast<int>(i)];
+        const double o = axis.origin[static_cast<int>(i)], d = axis.direction[static_cast<int>(i)];
         flare.origin[i] = static_cast<float>(o);
         flare.direction[i] = static_cast<float>(d);
         const double least = d - tangent, most = d + tangent;
@@ -358,15 +368,17 @@ BodyTree::Flare BodyTree::flare_of(const Vec4& origin, const Vec4& direction, co
         const double to_high =
             tangent == 0 ? to_low
                          : 1 / (forward ? std::max(least, kLeast) : std::min(least, -kLeast));
-        const auto side = [&](std::size_t which, double inverse, double widening) {
+        const auto side = [&](std::uint32_t which, double inverse, double widening) {
             return Side{which, static_cast<float>(inverse),
                         static_cast<float>(-o * inverse + widening * std::abs(inverse))};
         };
-        flare.enter[i] = backward ? side(1, to_high, -slack) : side(0, to_low, -slack);
-        flare.leave[i] =
-            backward ? side(0, to_low, slack) : side(1, to_high, flare.opens[i] ? -slack : slack);
+        flare.enter[i] =
+            backward ? side(Boxes::high(i), to_high, -slack) : side(Boxes::low(i), to_low, -slack);
+        flare.leave[i] = backward ? side(Boxes::low(i), to_low, slack)
+                                  : side(Boxes::high(i), to_high, flare.opens[i] ? -slack : slack);
     }
-    flare.slack = static_cast<float>(10 * slack);
+    flare.slack = static_cast<float>(kOriginSlack * reach);
+    flare.limit = rounded_up(kMiss);
     flare.sine = static_cast<float>(cone.sine);
     flare.cosine = static_cast<float>(cone.cosine);
     return flare;

@@ -11,13 +11,9 @@
 
 #include "render/lanes.hpp"
 #include "render/placed_bodies.hpp"
+#include "render/ray.hpp"
 
 namespace tesserae::render {
-
-/// The directions within an angle (possibly negative) of an axis, from an apex.
-struct Cone {
-    double sine, cosine;  ///< of the half-angle, within +-90 degrees
-};
 
 class RayStream;
 
@@ -36,20 +32,16 @@ class BodyTree {
     /// number of them.
     explicit BodyTree(const PlacedBodies& placed);
 
-    /// Calls visit(body index) for every bounded body that the ray may meet no farther than
-    /// `limit`, roughly nearest first; visit may lower `limit` (a reference to the caller's), and
-    /// returns false to end the walk.
-    /// @param direction   unit
+    /// Calls visit(body index) for every bounded body that the ray may meet up to its limit, also
+    /// the one that it is `on`, roughly nearest first; visit returns false to end the walk.
     template <class Visit>
-    void for_each_on_ray(const Vec4& origin, const Vec4& direction, const double& limit,
-                         Visit&& visit) const;
+    void for_each_on_ray(const Ray& ray, Visit&& visit) const;
 
     /// Calls visit(body index) for every bounded body whose bounding sphere may reach into the
-    /// cone about `direction` (unit) from `apex`; visit may narrow the cone (a reference to the
-    /// caller's), and returns false to end the walk.
+    /// cone about a ray, however far away; visit may narrow the cone (a reference to the caller's),
+    /// and returns false to end the walk.
     template <class Visit>
-    void for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
-                          Visit&& visit) const;
+    void for_each_in_cone(const Ray& axis, const Cone& cone, Visit&& visit) const;
 
     /// The bodies that no box holds, ascending: the walks leave them to the caller.
     const std::vector<std::uint32_t>& unbounded() const { return unbounded_; }
@@ -64,8 +56,23 @@ class BodyTree {
     /// 1/1000 of the distance at most, which is twice what the roundings can make of it.
     static constexpr float kSquareSlack = 1e-6f;
 
-    /// By axis the low sides and the high sides; low > high where a lane is not used.
-    using Boxes = std::array<std::array<Lanes, 2>, 4>;
+    /// Eight boxes; low > high where a lane is not used. A side is named by where its lane 0 is, as
+    /// in no other way the walks find it without arithmetic.
+    struct Boxes {
+        /// The low sides along the first axis, the high sides, the low sides along the next one...
+        alignas(Lanes) std::array<float, 8 * kLanes> sides;
+
+        static std::uint32_t low(std::size_t axis) {
+            return static_cast<std::uint32_t>(2 * axis * kLanes);
+        }
+        static std::uint32_t high(std::size_t axis) { return low(axis) + kLanes; }
+        static std::uint32_t opposite(std::uint32_t side) { return side ^ kLanes; }
+        Lanes at(std::uint32_t side) const {
+            Lanes coordinates;
+            std::memcpy(&coordinates, &sides[side], sizeof coordinates);
+            return coordinates;
+        }
+    };
     struct Node {
         Boxes boxes;
         std::array<std::uint32_t, kLanes> child;  ///< index of a node, or of a leaf
@@ -79,18 +86,20 @@ class BodyTree {
         std::array<std::uint32_t, kLanes> body;
     };
 
-    /// What the tests of one ray have in common. A side of a box, as a distance along the ray, is
-    /// coordinate * inverse + shift.
-    struct Line {
-        std::array<std::uint32_t, 4> enter_side;  ///< where in Boxes the first side is [bytes]
+    /// A Ray as eight boxes at once are tested against it: in floats, and what the tests have in
+    /// common worked out. A side of a box, as a distance along the ray, is coordinate * inverse +
+    /// shift.
+    struct alignas(64) Line {
+        std::array<std::uint32_t, 4> enter_side;  ///< of Boxes, by axis: the first on the way
         std::array<float, 4> inverse, enter_shift, leave_shift, origin, direction;
-        float slack;  ///< the origin's rounding
+        float slack;  ///< spheres count as so much wider: see kOriginSlack
+        float limit;
     };
-    static Line line_of(const Vec4& origin, const Vec4& direction);
+    static Line line_of(const Ray& ray);
     /// The same for a cone. A cone about d is, along every axis, no wider than rays of slopes
     /// d - tan and d + tan.
     struct Side {
-        std::size_t side;  ///< 0 low, 1 high
+        std::uint32_t side;  ///< of Boxes
         float inverse, shift;
     };
     struct Flare {
@@ -98,22 +107,21 @@ class BodyTree {
         std::array<Side, 4> enter, leave;
         /// The cone opens to both sides of this axis: it leaves no box there, and enters by both.
         std::array<bool, 4> opens;
-        float slack, sine, cosine;
+        float slack, limit, sine, cosine;
     };
-    static Flare flare_of(const Vec4& apex, const Vec4& direction, const Cone& cone);
-    /// Which boxes the ray, or cone, meets within the limit, and where it enters them.
-    static std::uint32_t boxes_met(const Boxes& boxes, const Line& line, float limit, Lanes& enter);
-    static std::uint32_t boxes_met(const Boxes& boxes, const Flare& cone, float limit,
-                                   Lanes& enter);
-    /// Which spheres the ray meets within the limit.
-    static std::uint32_t balls_on_ray(const Leaf& leaf, const Line& line, float limit);
+    static Flare flare_of(const Ray& axis, const Cone& cone);
+    /// Which boxes the ray, or cone, meets within its limit, and where it enters them.
+    static std::uint32_t boxes_met(const Boxes& boxes, const Line& line, Lanes& enter);
+    static std::uint32_t boxes_met(const Boxes& boxes, const Flare& cone, Lanes& enter);
+    /// Which spheres the ray meets within its limit.
+    static std::uint32_t balls_on_ray(const Leaf& leaf, const Line& line);
     /// Which spheres the cone may meet.
     static std::uint32_t balls_in_cone(const Leaf& leaf, const Flare& cone);
-    /// Calls visit(body) for the bodies of leaves that the ray (Line or Flare) meets and that
-    /// test(leaf), a mask of lanes, names; nodes come roughly nearest first. Ray and limit may
-    /// change on the way. Ends when visit returns false.
-    template <class Ray, class Test, class Visit>
-    void for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const;
+    /// Calls visit(body) for the bodies of leaves that the way (a Line or Flare) meets and that
+    /// test(leaf), a mask of lanes, names; nodes come roughly nearest first. The way may get
+    /// shorter or narrower as it goes. Ends when visit returns false.
+    template <class Way, class Test, class Visit>
+    void for_each_body(const Way& way, Test&& test, Visit&& visit) const;
 
     /// A limit as a float that is no smaller, or far: unused lanes are farther.
     static float rounded_up(double v) {
@@ -132,44 +140,38 @@ class BodyTree {
     std::vector<std::uint32_t> unbounded_;
 };
 
-inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, float limit,
-                                         Lanes& enter) {
-    const auto side = [&](std::size_t at) {
-        Lanes coordinates;
-        std::memcpy(&coordinates, reinterpret_cast<const std::byte*>(&boxes) + at,
-                    sizeof coordinates);
-        return coordinates;
-    };
-    Lanes first = all_lanes(0), last = all_lanes(limit);
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, Lanes& enter) {
+    Lanes first = all_lanes(0), last = all_lanes(line.limit);
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        const std::size_t near = line.enter_side[axis], far = near ^ sizeof(Lanes);
+        const std::uint32_t near = line.enter_side[axis], far = Boxes::opposite(near);
         const Lanes inverse = all_lanes(line.inverse[axis]);
-        first = larger(product_sum(side(near), inverse, all_lanes(line.enter_shift[axis])), first);
-        last = smaller(product_sum(side(far), inverse, all_lanes(line.leave_shift[axis])), last);
+        const Lanes enter_shift = all_lanes(line.enter_shift[axis]);
+        const Lanes leave_shift = all_lanes(line.leave_shift[axis]);
+        first = larger(product_sum(boxes.at(near), inverse, enter_shift), first);
+        last = smaller(product_sum(boxes.at(far), inverse, leave_shift), last);
     }
     enter = first;
     // Both are right to three roundings.
     return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, float limit,
-                                         Lanes& enter) {
-    Lanes first = all_lanes(0), last = all_lanes(limit);
-    const auto distance = [&](std::size_t axis, const Side& side) {
-        return product_sum(boxes[axis][side.side], all_lanes(side.inverse), all_lanes(side.shift));
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, Lanes& enter) {
+    Lanes first = all_lanes(0), last = all_lanes(cone.limit);
+    const auto distance = [&](const Side& side) {
+        return product_sum(boxes.at(side.side), all_lanes(side.inverse), all_lanes(side.shift));
     };
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        first = larger(distance(axis, cone.enter[axis]), first);
+        first = larger(distance(cone.enter[axis]), first);
         if (cone.opens[axis])
-            first = larger(distance(axis, cone.leave[axis]), first);
+            first = larger(distance(cone.leave[axis]), first);
         else
-            last = smaller(distance(axis, cone.leave[axis]), last);
+            last = smaller(distance(cone.leave[axis]), last);
     }
     enter = first;
     return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Line& line, float limit) {
+inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Line& line) {
     Lanes along = all_lanes(0), square = all_lanes(0);
     for (std::size_t axis = 0; axis < 4; ++axis) {
         const Lanes v = leaf.centre[axis] - line.origin[axis];
@@ -180,7 +182,7 @@ inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Line& line, 
     const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
     // Missed where the chord's middle lies back, and the origin outside; or where the middle is
     // past the limit by more than half the chord: of that half, the square.
-    const Lanes past = larger(along - limit, all_lanes(0));
+    const Lanes past = larger(along - line.limit, all_lanes(0));
     const Lanes half = product_sum(along, along, power);
     return not_above(all_lanes(0), smaller(product_sum(-past, past, half), larger(along, power)));
 }
@@ -200,8 +202,8 @@ inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Flare& cone
            not_above(all_lanes(0), along + radius);
 }
 
-template <class Ray, class Test, class Visit>
-void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Visit&& visit) const {
+template <class Way, class Test, class Visit>
+void BodyTree::for_each_body(const Way& way, Test&& test, Visit&& visit) const {
     if (nodes_.empty()) return;
     struct Waiting {
         std::uint32_t node;
@@ -212,7 +214,7 @@ void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Vi
     for (Waiting next = {0, 0};;) {
         const Node& node = nodes_[next.node];
         Lanes enter;
-        const std::uint32_t met = boxes_met(node.boxes, ray, limit, enter);
+        const std::uint32_t met = boxes_met(node.boxes, way, enter);
 
         // All leaves at once: most name no body, and tests that wait for nothing overlap.
         std::uint64_t named = 0;
@@ -243,41 +245,32 @@ void BodyTree::for_each_body(const Ray& ray, const float& limit, Test&& test, Vi
                     waiting[at] = waiting[at - 1];
                 waiting[at] = farther;
             }
-            if (next.enter <= limit) continue;
+            if (next.enter <= way.limit) continue;
         }
         do {
             if (count == 0) return;
             next = waiting[--count];
-        } while (next.enter > limit);
+        } while (next.enter > way.limit);
     }
 }
 
 template <class Visit>
-void BodyTree::for_each_on_ray(const Vec4& origin, const Vec4& direction, const double& limit,
-                               Visit&& visit) const {
-    const Line line = line_of(origin, direction);
-    float reach = rounded_up(limit);
+void BodyTree::for_each_on_ray(const Ray& ray, Visit&& visit) const {
+    const Line line = line_of(ray);
     for_each_body(
-        line, reach, [&](const Leaf& leaf) { return balls_on_ray(leaf, line, reach); },
-        [&](std::uint32_t body) {
-            const bool goes_on = visit(body);
-            reach = rounded_up(limit);
-            return goes_on;
-        });
+        line, [&](const Leaf& leaf) { return balls_on_ray(leaf, line); }, visit);
 }
 
 template <class Visit>
-void BodyTree::for_each_in_cone(const Vec4& apex, const Vec4& direction, const Cone& cone,
-                                Visit&& visit) const {
-    Flare flare = flare_of(apex, direction, cone);
+void BodyTree::for_each_in_cone(const Ray& axis, const Cone& cone, Visit&& visit) const {
+    Flare flare = flare_of(axis, cone);
     double sine = cone.sine;
-    const float reach = rounded_up(kMiss);
     for_each_body(
-        flare, reach, [&](const Leaf& leaf) { return balls_in_cone(leaf, flare); },
+        flare, [&](const Leaf& leaf) { return balls_in_cone(leaf, flare); },
         [&](std::uint32_t body) {
             const bool goes_on = visit(body);
             if (cone.sine != sine) {
-                flare = flare_of(apex, direction, cone);
+                flare = flare_of(axis, cone);
                 sine = cone.sine;
             }
             return goes_on;

@@ -4,7 +4,8 @@
 #include <optional>
 
 #include "render/camera.hpp"
-#include "render/view_scene.hpp"
+#include "render/slice.hpp"
+#include "render/view_ray.hpp"
 
 namespace tesserae::render {
 

@@ -13,23 +13,19 @@ void FilmList::fill(std::span<const SliceBounds> slice, std::span<const std::uin
     }
 }
 
-Hit FilmList::nearest(const PlacedBodies& placed, const Vec3& view, const Vec4& world,
+Hit FilmList::nearest(const PlacedBodies& placed, const Vec3& view, Ray ray,
                       const Settings& settings, FrameStats& stats) const {
     Hit hit;
-    double limit = settings.max_distance;
     for (const Candidate& c : candidates_) {
-        if (c.nearest > limit) break;
+        if (c.nearest > ray.limit) break;
         const double middle = c.centre.dot(view);
         const double off = c.distance_squared - middle * middle;
         if (off > c.radius_squared) continue;
         if (middle < 0 && c.distance_squared > c.radius_squared) continue;
-        const double past = middle - limit;
+        const double past = middle - ray.limit;
         if (past > 0 && past * past > c.radius_squared - off) continue;
-        const double t = hit_distance(placed, c.body, Vec4::Zero(), world, limit, settings, stats);
-        if (t < hit.distance || (t == hit.distance && t < kMiss && c.body < hit.body)) {
-            hit = {t, c.body};
-            limit = t;
-        }
+        if (hit.take(c.body, hit_distance(placed, c.body, ray, settings, stats)))
+            ray.limit = hit.distance;
     }
     return hit;
 }

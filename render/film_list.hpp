@@ -23,11 +23,10 @@ class FilmList {
     void fill(std::span<const SliceBounds> slice, std::span<const std::uint32_t> list,
               const Crop& window);
 
-    /// The nearest body that a ray through the window meets; equal distances go to the lower id.
-    /// @param view    unit direction in camera coordinates
-    /// @param world   the same direction in world axes
-    Hit nearest(const PlacedBodies& placed, const Vec3& view, const Vec4& world,
-                const Settings& settings, FrameStats& stats) const;
+    /// What a ray from the pinhole through the window meets first.
+    /// @param view   its direction in camera coordinates
+    Hit nearest(const PlacedBodies& placed, const Vec3& view, Ray ray, const Settings& settings,
+                FrameStats& stats) const;
 
   private:
     struct Candidate {

@@ -38,7 +38,7 @@ double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
 
 /// For rays that leave the slice, if there are any.
 BodyTree tree_of(const Picture& picture, const PlacedBodies& placed, const LightSet& lights) {
-    const bool is_asked = !lights.is_empty() || LightTransport::needs_rays(picture);
+    const bool is_asked = !lights.is_empty() || needs_rays(picture);
     return BodyTree(is_asked ? placed : PlacedBodies{});
 }
 
@@ -70,7 +70,7 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       lights(picture.lights, camera.origin()),
       tree(tree_of(picture, placed, lights)),
       shading(picture, placed, tree, lights, rough),
-      transport(picture, placed, tree, lights, shading),
+      integrator(make_integrator(picture, placed, tree, lights, shading)),
       rays(description, camera) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)

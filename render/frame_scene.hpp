@@ -6,7 +6,8 @@
 
 #include "render/camera_rays.hpp"
 #include "render/filter.hpp"
-#include "render/path.hpp"
+#include "render/integrator/integrator.hpp"
+#include "render/view_scene.hpp"
 
 namespace tesserae::render {
 
@@ -16,9 +17,9 @@ struct Instant {
     Camera camera;  ///< of a cell
     PlacedBodies placed;
     LightSet lights;
-    BodyTree tree;  ///< empty where there are neither shadows nor rays of the transport's
+    BodyTree tree;  ///< empty where there are neither shadows nor rays of the integrator's
     Shading shading;
-    LightTransport transport;
+    std::unique_ptr<const LightIntegrator> integrator;
     CameraRays rays;
     std::optional<ViewScene> view;  ///< none where FrameScene::slice serves
 

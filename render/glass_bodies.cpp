@@ -78,26 +78,24 @@ double GlassBodies::refractive_index(std::uint32_t medium) const {
     return medium == kNone ? 1 : material_of(picture_, placed_.bodies[medium].id).ior;
 }
 
-GlassBodies::Event GlassBodies::next(std::uint32_t medium, const Vec4& origin,
-                                     const Vec4& direction, std::uint32_t on,
-                                     FrameStats& stats) const {
+GlassBodies::Event GlassBodies::next(std::uint32_t medium, Ray ray, FrameStats& stats) const {
     const PlacedBody& glass = placed_.bodies[medium];
     const double exit = std::visit(
         [&](const auto& s) {
-            return ray_exit(s, placed_.point_to_body(glass, origin),
-                            placed_.direction_to_body(glass, direction));
+            return ray_exit(s, placed_.point_to_body(glass, ray.origin),
+                            placed_.direction_to_body(glass, ray.direction));
         },
         *glass.shape);
-    Event event;
-    if (exit < kMiss) event = {{exit, medium}, true};
+    Hit hit;
+    ray.limit = exit;
     for (const std::uint32_t body : neighbours_[slot_[medium]]) {
-        if (body == on || (is_glass(body) && body > medium)) continue;
-        const double limit = std::min(event.hit.distance, exit);
-        const double t =
-            hit_distance(placed_, body, origin, direction, limit, picture_.settings, stats);
-        if (t < event.hit.distance) event = {{t, body}, false};
+        if (body == ray.on || (is_glass(body) && body > medium)) continue;
+        if (hit.take(body, hit_distance(placed_, body, ray, picture_.settings, stats)))
+            ray.limit = hit.distance;
     }
-    return event;
+    // What is met where the ray leaves is outside.
+    if (exit <= hit.distance && exit < kMiss) return {{exit, medium}, true};
+    return {hit, false};
 }
 
 std::uint32_t GlassBodies::medium_beyond(std::uint32_t body, const Vec4& point) const {

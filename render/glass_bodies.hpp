@@ -14,7 +14,7 @@ namespace tesserae::render {
 class GlassBodies {
   public:
     /// No medium: empty space, index 1.
-    static constexpr std::uint32_t kNone = RayScene::kNoBody;
+    static constexpr std::uint32_t kNone = kNoBody;
 
     /// @param picture, placed   must outlive it
     GlassBodies(const Picture& picture, const PlacedBodies& placed);
@@ -28,9 +28,9 @@ class GlassBodies {
     /// What a ray inside the glass body `medium` meets next: a body in the glass, a glass that
     /// rules there, or the medium's own surface from inside (in closed form, whatever the
     /// intersector). No hit: it never leaves (an infinite half-space).
-    /// @param on   as in RayScene::nearest; the medium itself is left by its far side
-    Event next(std::uint32_t medium, const Vec4& origin, const Vec4& direction, std::uint32_t on,
-               FrameStats& stats) const;
+    /// @param ray   without a limit; of the body that it is `on`, the medium is left by its far
+    /// side
+    Event next(std::uint32_t medium, Ray ray, FrameStats& stats) const;
 
     /// The medium just outside a glass body, at a point of its surface.
     std::uint32_t medium_beyond(std::uint32_t body, const Vec4& point) const;

@@ -53,18 +53,17 @@ Span inside_sphere(const Vec4& origin, const Vec4& direction, double radius) {
 
 }  // namespace
 
-double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Vec4& origin,
-                    const Vec4& direction, double limit, const Settings& settings,
-                    FrameStats& stats) {
+double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Ray& ray,
+                    const Settings& settings, FrameStats& stats) {
     const PlacedBody& body = placed.bodies[index];
     const auto in_frame = [&](const Vec4& o, const Vec4& d) {
         return std::visit(
             [&](const auto& shape) {
                 if (settings.intersector == Intersector::kAnalytic) {
                     const double t = ray_hit(shape, o, d);
-                    return t <= limit ? t : kMiss;
+                    return t <= ray.limit ? t : kMiss;
                 }
-                double start = 0, end = limit;
+                double start = 0, end = ray.limit;
                 if constexpr (std::decay_t<decltype(shape)>::kBounded) {
                     const Span inside = inside_sphere(o, d, body.radius);
                     start = std::max(start, inside.start);
@@ -76,9 +75,10 @@ double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Vec4&
             *body.shape);
     };
     // Two calls: a choice of vectors would be copied by halves, and reading them back stalls.
-    if (body.turn == PlacedBody::kNotTurned) return in_frame(origin - body.centre, direction);
+    if (body.turn == PlacedBody::kNotTurned)
+        return in_frame(ray.origin - body.centre, ray.direction);
     const Mat4& turn = placed.turns[body.turn];
-    return in_frame(turn * (origin - body.centre), turn * direction);
+    return in_frame(turn * (ray.origin - body.centre), turn * ray.direction);
 }
 
 }  // namespace tesserae::render

@@ -25,34 +25,29 @@ RayScene::RayScene(const PlacedBodies& placed, const BodyTree& tree, const Setti
     }
 }
 
-void RayScene::nearest(std::span<const Ray> rays, std::span<Hit> hits, FrameStats& stats) const {
+void RayScene::nearest(std::span<Ray> rays, std::span<Hit> hits, FrameStats& stats) const {
     for (std::size_t i = 0; i < rays.size(); i += RayStream::kMost) {
         const std::size_t count = std::min<std::size_t>(RayStream::kMost, rays.size() - i);
         nearest_in_stream(rays.subspan(i, count), hits.subspan(i, count), stats);
     }
 }
 
-void RayScene::nearest_in_stream(std::span<const Ray> rays, std::span<Hit> hits,
+void RayScene::nearest_in_stream(std::span<Ray> rays, std::span<Hit> hits,
                                  FrameStats& stats) const {
     RayStream stream(tree_);
-    const auto limit = [&](std::size_t i) { return std::min(rays[i].limit, hits[i].distance); };
     const auto distance = [&](std::size_t i, std::uint32_t body) {
-        const Ray& ray = rays[i];
-        return hit_distance(placed_, body, ray.origin, ray.direction, limit(i), settings_, stats);
+        return hit_distance(placed_, body, rays[i], settings_, stats);
     };
     const auto take = [&](std::uint32_t i, std::uint32_t body, double t) {
-        Hit& hit = hits[i];
-        if (!(t <= rays[i].limit)) return;
-        if (t < hit.distance || (t == hit.distance && t < kMiss && body < hit.body)) {
-            hit = {t, body};
-            stream.shorten(i, t);
-        }
+        if (!(t <= rays[i].limit) || !hits[i].take(body, t)) return;
+        rays[i].limit = t;
+        stream.shorten(i, t);
     };
     for (std::uint32_t i = 0; i < rays.size(); ++i) {
         hits[i] = {};
         for (const std::uint32_t body : tree_.unbounded())
             if (body != rays[i].on) take(i, body, distance(i, body));
-        stream.add(rays[i].origin, rays[i].direction, limit(i));
+        stream.add(rays[i]);
     }
     std::array<std::array<RayStream::Candidate, RayStream::kMostAtOnce>, kKinds> tests;
     std::array<double, RayStream::kMostAtOnce> distances;
@@ -98,17 +93,15 @@ void RayScene::prefetch(const Slot& slot) const {
     for (std::size_t at = 0; at < sizeof(Box); at += alignof(Box)) __builtin_prefetch(record + at);
 }
 
-bool RayScene::is_blocked(const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
-                          FrameStats& stats) const {
+bool RayScene::is_blocked(const Ray& ray, FrameStats& stats) const {
     bool blocked = false;
     const auto clears = [&](std::uint32_t body) {
-        blocked = body != on &&
-                  hit_distance(placed_, body, origin, direction, limit, settings_, stats) < kMiss;
+        blocked = body != ray.on && hit_distance(placed_, body, ray, settings_, stats) < kMiss;
         return !blocked;
     };
     for (const std::uint32_t body : tree_.unbounded())
         if (!clears(body)) return true;
-    tree_.for_each_on_ray(origin, direction, limit, clears);
+    tree_.for_each_on_ray(ray, clears);
     return blocked;
 }
 

@@ -50,10 +50,9 @@ void RayStream::find_leaves() {
         std::uint32_t last = end;
         for (std::uint32_t i = first; i < end; ++i) {
             const std::uint32_t number = waiting_[i] % kMost;
-            const Ray& ray = rays_[number];
             const BodyTree::Node& node = tree_.nodes_[waiting_[i] / kMost];
             Lanes enter;
-            const std::uint32_t met = BodyTree::boxes_met(node.boxes, ray.line, ray.limit, enter);
+            const std::uint32_t met = BodyTree::boxes_met(node.boxes, lines_[number], enter);
             const Numbers children = packed(node.child, number);
             const std::uint32_t nodes = met & ~node.leaves, leaves = met & node.leaves;
             store_set(&children, nodes, &waiting_[last]);
@@ -73,9 +72,8 @@ std::size_t RayStream::test_leaves() {
     std::uint32_t count = 0;
     for (std::uint32_t i = leaf_begin_; i < end; ++i) {
         const std::uint32_t number = leaves_[i] % kMost;
-        const Ray& ray = rays_[number];
         const BodyTree::Leaf& leaf = tree_.leaves_[leaves_[i] / kMost];
-        const std::uint32_t met = BodyTree::balls_on_ray(leaf, ray.line, ray.limit);
+        const std::uint32_t met = BodyTree::balls_on_ray(leaf, lines_[number]);
         const Numbers bodies = packed(leaf.body, number);
         store_set(&bodies, met, &candidates_[count]);
         count += bit_count(met);

@@ -35,16 +35,15 @@ class RayStream {
     explicit RayStream(const BodyTree& tree) : tree_(tree) {}
 
     /// The next ray, numbered from 0; before the first call of `next`, and at most kMost.
-    /// @param direction   unit
-    /// @param limit       bodies farther than this are left out where that is cheap [m]
-    void add(const Vec4& origin, const Vec4& direction, double limit) {
-        rays_[size_].line = BodyTree::line_of(origin, direction);
+    /// Bodies beyond its limit are left out where that is cheap; the one that it is `on` is not.
+    void add(const Ray& ray) {
+        lines_[size_] = BodyTree::line_of(ray);
         waiting_[size_] = size_;  // at the root
-        shorten(size_++, limit);
+        ++size_;
     }
     /// Lowers a ray's limit.
     void shorten(std::uint32_t ray, double limit) {
-        rays_[ray].limit = BodyTree::rounded_up(limit);
+        lines_[ray].limit = BodyTree::rounded_up(limit);
     }
 
     /// More bounded bodies that rays may meet, valid until the next call; none at the end. Every
@@ -55,10 +54,6 @@ class RayStream {
     /// Nodes tested in one go, at most: four of each ray.
     static constexpr std::uint32_t kTogether = 64;
 
-    struct alignas(64) Ray {
-        BodyTree::Line line;
-        float limit;
-    };
     struct Range {
         std::uint32_t begin, end;
     };
@@ -68,7 +63,7 @@ class RayStream {
 
     const BodyTree& tree_;
     std::uint32_t size_ = 0;
-    std::array<Ray, kMost> rays_;
+    std::array<BodyTree::Line, kMost> lines_;
 
     // Lists of index * kMost + ray, with room to append eight at once.
     /// Nodes not yet tested, by level: what the last go found there, less what went on from there.

@@ -33,9 +33,9 @@ Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyT
     if (!lights.is_empty()) shadows_.emplace(placed, tree);
 }
 
-Surface Shading::surface(const Hit& hit, const Vec4& origin, const Vec4& direction) const {
+Surface Shading::surface(const Hit& hit, const Ray& ray) const {
     const PlacedBody& body = placed_.bodies[hit.body];
-    const Vec4 point = origin + hit.distance * direction;
+    const Vec4 point = ray.at(hit.distance);
     const Vec4 local = placed_.point_to_body(body, point);
     const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
     const std::uint32_t type = picture_.bodies.type[body.id];

@@ -28,9 +28,7 @@ class Shading {
             const LightSet& lights, const RoughReflections& rough);
 
     /// Where a ray meets a body.
-    /// @param origin      of the ray, relative to the camera
-    /// @param direction   of the ray, unit, world axes
-    Surface surface(const Hit& hit, const Vec4& origin, const Vec4& direction) const;
+    Surface surface(const Hit& hit, const Ray& ray) const;
 
     /// Radiance that leaves the surface toward the viewer: its emission, plus the sum over the
     /// lights of BRDF * irradiance * visibility, plus albedo times the sky's radiance. The BRDF of

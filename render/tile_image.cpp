@@ -24,18 +24,12 @@ Imath::half to_half(double v) {
     return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
 }
 
-/// A view ray on its way into the scene.
+/// A view ray and what it meets.
 struct View {
     const Instant* instant;
-    ViewRay ray;
-    Vec4 origin, direction;  ///< world axes, relative to the instant's camera
+    ViewRay in_slice;
+    Ray ray;  ///< the same, about the instant's camera
     std::optional<Surface> surface;
-
-    View(const Instant& i, const ViewRay& r)
-        : instant(&i),
-          ray(r),
-          origin(i.camera.to_world({r.origin.x(), r.origin.y(), r.origin.z(), r.fourth})),
-          direction(i.camera.to_world({r.direction.x(), r.direction.y(), r.direction.z(), 0})) {}
 };
 
 /// What is averaged over a pixel's samples.
@@ -49,7 +43,7 @@ struct Filtered {
 /// The rays of one tile, window by window of the size of a film list.
 class TileRays {
   public:
-    TileRays(const FrameScene& scene, const Tile& tile) : scene_(scene), tile_(tile) {}
+    TileRays(const FrameScene& scene, const Tile& tile);
 
     /// Makes ready for the pixels of a window.
     void enter(const Crop& window) { list_.fill(scene_.slice(), tile_.candidates, window); }
@@ -59,107 +53,27 @@ class TileRays {
   private:
     using Cell = SliceSheet::Cell;
 
-    View centre(const Cell& cell, int x, int y);
-    /// Samples begin <= i < end, at most kBatch.
-    void add_samples(const Cell& cell, int x, int y, int begin, int end, Filtered& sum);
-    void trace(std::span<View> views);
-    /// The views of a pixel's samples from `first` on.
-    void add(std::span<const View> views, const SampleNumber& first, Filtered& sum);
-    /// What comes along them: into colors_.
-    void light(std::span<const View> views, const SampleNumber& first);
+    int samples_wanted(const Filtered& sum) const;
+    View centre(const Cell& cell, int x, int y) const;
+    View sample(const Cell& cell, int x, int y, int index) const;
+    View view_of(const Instant& instant, const ViewRay& ray) const;
+    // Of views_:
+    void trace();
+    void add_radiance(Filtered& sum, const SampleNumber& first);
+    void find_radiance(const SampleNumber& first);
 
     const FrameScene& scene_;
     const Tile& tile_;
+    const Settings& settings_;
+    int least_, most_;  ///< samples of a pixel
+    bool wants_centre_, wants_samples_;
     FilmList list_;
-    std::vector<View> views_;
+    std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
     std::vector<ViewRay> rays_;
     std::vector<Hit> hits_;
-    std::vector<LightTransport::Start> starts_;
+    std::vector<ViewSample> lit_;
     std::vector<Color> colors_;
 };
-
-void TileRays::trace(std::span<View> views) {
-    stats.view_rays += views.size();
-    const Settings& settings = scene_.picture().settings;
-    hits_.resize(views.size());
-    if (scene_.is_pinhole()) {
-        for (std::size_t i = 0; i < views.size(); ++i)
-            hits_[i] = list_.nearest(views[i].instant->placed, views[i].ray.direction,
-                                     views[i].direction, settings, stats);
-    } else if (scene_.is_still()) {
-        rays_.clear();
-        for (const View& view : views) rays_.push_back(view.ray);
-        scene_.opening().view->nearest(rays_, hits_, stats);
-    } else {
-        for (std::size_t i = 0; i < views.size(); ++i)
-            views[i].instant->view->nearest({&views[i].ray, 1}, {&hits_[i], 1}, stats);
-    }
-    for (std::size_t i = 0; i < views.size(); ++i)
-        if (hits_[i])
-            views[i].surface =
-                views[i].instant->shading.surface(hits_[i], views[i].origin, views[i].direction);
-}
-
-View TileRays::centre(const Cell& cell, int x, int y) {
-    const Instant& opening = scene_.opening();
-    View view(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
-    trace({&view, 1});
-    return view;
-}
-
-void TileRays::add_samples(const Cell& cell, int x, int y, int begin, int end, Filtered& sum) {
-    views_.clear();
-    for (int i = begin; i < end; ++i) {
-        const auto number = static_cast<std::uint32_t>(i);
-        const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
-        if (scene_.is_pinhole()) {
-            views_.emplace_back(scene_.opening(), scene_.opening().rays.middle(cell, film));
-            continue;
-        }
-        const auto u = Sampler(x, y, number).group(kCameraGroup);
-        const Instant& instant = scene_.at(u[3]);
-        views_.emplace_back(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
-    }
-    trace(views_);
-    add(views_, {y, x, static_cast<std::uint32_t>(begin)}, sum);
-}
-
-void TileRays::add(std::span<const View> views, const SampleNumber& first, Filtered& sum) {
-    for (const View& view : views) {
-        ++sum.count;
-        if (!view.surface) continue;
-        sum.alpha += 1;
-        sum.albedo += view.surface->albedo;
-    }
-    if (!scene_.wants_color()) return;
-    light(views, first);
-    SampleNumber sample = first;
-    for (const Color& color : colors_) {
-        if (color.isFinite().all()) {
-            sum.color.add(color);
-        } else {
-            sum.color.add(Color::Zero());
-            stats.count_invalid(sample, 1);
-        }
-        ++sample.sample;
-    }
-}
-
-void TileRays::light(std::span<const View> views, const SampleNumber& first) {
-    starts_.clear();
-    for (std::uint32_t i = 0; i < views.size(); ++i)
-        starts_.push_back({views[i].surface ? &*views[i].surface : nullptr, views[i].origin,
-                           views[i].direction, Sampler(first.x, first.y, first.sample + i)});
-    colors_.resize(views.size());
-    // Those of one instant together.
-    for (std::size_t begin = 0, end; begin < views.size(); begin = end) {
-        const Instant& instant = *views[begin].instant;
-        end = begin + 1;
-        while (end < views.size() && views[end].instant == &instant) ++end;
-        instant.transport.radiance(std::span(starts_).subspan(begin, end - begin),
-                                   std::span(colors_).subspan(begin, end - begin), stats);
-    }
-}
 
 void store_view(const View& view, Pixel& pixel) {
     if (!view.surface) return;
@@ -184,39 +98,12 @@ void store_filtered(const Filtered& sum, Pixel& pixel) {
     pixel.samples = static_cast<std::uint32_t>(sum.count);
 }
 
-Pixel TileRays::pixel(int x, int y) {
-    const Settings& settings = scene_.picture().settings;
-    const Channels& c = settings.channels;
-    Pixel pixel = {};
-    pixel.depth = std::numeric_limits<float>::infinity();
-    const auto cell = scene_.sheet().cell_of(x, y);
-    if (!cell) return pixel;
-
-    const bool is_adaptive = settings.noise_target > 0 && scene_.wants_color();
-    const int least = settings.samples;
-    const int most = is_adaptive ? settings.most_samples() : least;
-    Filtered sum;
-    if (most == 1 || c.depth || c.normal || c.position || c.id) {
-        const View view = centre(*cell, x, y);
-        store_view(view, pixel);
-        if (most == 1) add({&view, 1}, {y, x, 0}, sum);
-    }
-    if (most > 1 && (scene_.wants_color() || c.albedo || c.samples || c.variance)) {
-        while (sum.count < least)
-            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, least), sum);
-        while (sum.count < most && sum.color.noise() > settings.noise_target)
-            add_samples(*cell, x, y, sum.count, std::min(sum.count + kBatch, most), sum);
-    }
-    store_filtered(sum, pixel);
-    return pixel;
-}
-
 }  // namespace
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
     TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};
-    const auto width = static_cast<std::size_t>(image.width());
-    image.pixels.resize(width * static_cast<std::size_t>(tile.y1 - tile.y0));
+    image.pixels.resize(static_cast<std::size_t>(image.width()) *
+                        static_cast<std::size_t>(tile.y1 - tile.y0));
     TileRays rays(scene, tile);
     constexpr int kSide = FilmList::kSide;
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kSide)
@@ -227,12 +114,128 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
             for (int y = window.y0; y < window.y1; ++y)
                 for (int x = window.x0; x < window.x1; ++x) {
                     if (stop.load(std::memory_order_relaxed)) throw Stopped();
-                    image.pixels[static_cast<std::size_t>(y - tile.y0) * width +
-                                 static_cast<std::size_t>(x - tile.x0)] = rays.pixel(x, y);
+                    image.pixels[image.index(x, y)] = rays.pixel(x, y);
                 }
         }
     image.stats = rays.stats;
     return image;
 }
 
+namespace {
+
+TileRays::TileRays(const FrameScene& scene, const Tile& tile)
+    : scene_(scene), tile_(tile), settings_(scene.picture().settings), least_(settings_.samples) {
+    const Channels& c = settings_.channels;
+    const bool is_adaptive = settings_.noise_target > 0 && scene.wants_color();
+    most_ = is_adaptive ? settings_.most_samples() : least_;
+    wants_centre_ = most_ == 1 || c.depth || c.normal || c.position || c.id;
+    wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance);
+}
+
+Pixel TileRays::pixel(int x, int y) {
+    Pixel pixel = {};
+    pixel.depth = std::numeric_limits<float>::infinity();
+    const auto cell = scene_.sheet().cell_of(x, y);
+    if (!cell) return pixel;
+
+    Filtered sum;
+    if (wants_centre_) {
+        views_.assign(1, centre(*cell, x, y));
+        trace();
+        store_view(views_.front(), pixel);
+        if (most_ == 1) add_radiance(sum, {y, x, 0});
+    }
+    while (wants_samples_ && sum.count < samples_wanted(sum)) {
+        const int begin = sum.count, end = std::min(begin + kBatch, samples_wanted(sum));
+        views_.clear();
+        for (int i = begin; i < end; ++i) views_.push_back(sample(*cell, x, y, i));
+        trace();
+        add_radiance(sum, {y, x, static_cast<std::uint32_t>(begin)});
+    }
+    store_filtered(sum, pixel);
+    return pixel;
+}
+
+int TileRays::samples_wanted(const Filtered& sum) const {
+    if (sum.count < least_) return least_;
+    return sum.color.noise() > settings_.noise_target ? most_ : sum.count;
+}
+
+View TileRays::centre(const Cell& cell, int x, int y) const {
+    const Instant& opening = scene_.opening();
+    return view_of(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+}
+
+View TileRays::sample(const Cell& cell, int x, int y, int index) const {
+    const auto number = static_cast<std::uint32_t>(index);
+    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
+    if (scene_.is_pinhole())
+        return view_of(scene_.opening(), scene_.opening().rays.middle(cell, film));
+    const auto u = Sampler(x, y, number).group(kCameraGroup);
+    const Instant& instant = scene_.at(u[3]);
+    return view_of(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
+}
+
+View TileRays::view_of(const Instant& instant, const ViewRay& ray) const {
+    return {&instant, ray, world_ray(ray, instant.camera, settings_.max_distance), {}};
+}
+
+void TileRays::trace() {
+    stats.view_rays += views_.size();
+    hits_.resize(views_.size());
+    if (scene_.is_pinhole()) {
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            hits_[i] = list_.nearest(views_[i].instant->placed, views_[i].in_slice.direction,
+                                     views_[i].ray, settings_, stats);
+    } else if (scene_.is_still()) {
+        rays_.clear();
+        for (const View& view : views_) rays_.push_back(view.in_slice);
+        scene_.opening().view->nearest(rays_, hits_, stats);
+    } else {
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            views_[i].instant->view->nearest({&views_[i].in_slice, 1}, {&hits_[i], 1}, stats);
+    }
+    for (std::size_t i = 0; i < views_.size(); ++i)
+        if (hits_[i])
+            views_[i].surface = views_[i].instant->shading.surface(hits_[i], views_[i].ray);
+}
+
+void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
+    for (const View& view : views_) {
+        ++sum.count;
+        if (!view.surface) continue;
+        sum.alpha += 1;
+        sum.albedo += view.surface->albedo;
+    }
+    if (!scene_.wants_color()) return;
+    find_radiance(first);
+    SampleNumber sample = first;
+    for (const Color& color : colors_) {
+        if (color.isFinite().all()) {
+            sum.color.add(color);
+        } else {
+            sum.color.add(Color::Zero());
+            stats.count_invalid(sample, 1);
+        }
+        ++sample.sample;
+    }
+}
+
+void TileRays::find_radiance(const SampleNumber& first) {
+    lit_.clear();
+    for (std::uint32_t i = 0; i < views_.size(); ++i)
+        lit_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
+                        Sampler(first.x, first.y, first.sample + i)});
+    colors_.resize(views_.size());
+    // Those of one instant together.
+    for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {
+        const Instant& instant = *views_[begin].instant;
+        end = begin + 1;
+        while (end < views_.size() && views_[end].instant == &instant) ++end;
+        instant.integrator->radiance(std::span(lit_).subspan(begin, end - begin),
+                                     std::span(colors_).subspan(begin, end - begin), stats);
+    }
+}
+
+}  // namespace
 }  // namespace tesserae::render

@@ -32,10 +32,11 @@ struct TileImage {
     FrameStats stats;
 
     int width() const { return x1 - x0; }
-    const Pixel& at(int x, int y) const {
-        return pixels[static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
-                      static_cast<std::size_t>(x - x0)];
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y - y0) * static_cast<std::size_t>(width()) +
+               static_cast<std::size_t>(x - x0);
     }
+    const Pixel& at(int x, int y) const { return pixels[index(x, y)]; }
 };
 
 /// Renders a tile's pixels. Depth, normal, position and id are those of the ray through the pixel's

@@ -13,27 +13,23 @@ namespace {
 /// to a float, of boxes, ray origins and directions, which Embree knows nothing of.
 constexpr double kWidenFloats = 5e-7;
 
-/// A ray under way, with Embree's context at its head, which is all that Embree hands to callbacks.
+/// A Ray under way, with Embree's context at its head, which is all that Embree hands to callbacks.
 struct Query {
     RayContext context = ray_context();
     const PlacedBodies* placed = nullptr;
     const Settings* settings = nullptr;
     FrameStats* stats = nullptr;
-    Vec4 origin, direction;  ///< world axes, about the camera
+    Ray ray;
     Hit hit;
-    double limit;
 
     void test(std::uint32_t body) {
-        const double t = hit_distance(*placed, body, origin, direction, limit, *settings, *stats);
-        if (t < hit.distance || (t == hit.distance && t < kMiss && body < hit.body)) {
-            hit = {t, body};
-            limit = t;
-        }
+        if (hit.take(body, hit_distance(*placed, body, ray, *settings, *stats)))
+            ray.limit = hit.distance;
     }
     /// A float that is no smaller than the limit.
     float reach() const {
-        const float f = static_cast<float>(limit);
-        return f < limit ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+        const float f = static_cast<float>(ray.limit);
+        return f < ray.limit ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
     }
 };
 
@@ -121,10 +117,8 @@ void ViewScene::nearest(std::span<const ViewRay> rays, std::span<Hit> hits,
         // Embree's own assertions end the program on a NaN.
         TSR_ASSERT(r.origin.norm() <= reach_ && r.direction.allFinite());
         TSR_ASSERT(r.fourth >= range_.low && r.fourth <= range_.high);
-        query.origin = camera_.to_world({r.origin.x(), r.origin.y(), r.origin.z(), r.fourth});
-        query.direction = camera_.to_world({r.direction.x(), r.direction.y(), r.direction.z(), 0});
+        query.ray = world_ray(r, camera_, settings_.max_distance);
         query.hit = {};
-        query.limit = settings_.max_distance;
         for (const std::uint32_t body : unbounded_) query.test(body);
         if (embree_) {
             RTCRayHit ray{};

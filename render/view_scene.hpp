@@ -7,15 +7,9 @@
 
 #include "render/intersect.hpp"
 #include "render/slice.hpp"
+#include "render/view_ray.hpp"
 
 namespace tesserae::render {
-
-/// A ray that stays in a hyperplane parallel to the camera's. Camera coordinates.
-struct ViewRay {
-    Vec3 origin = Vec3::Zero();  ///< [m]
-    Vec3 direction;              ///< unit
-    double fourth = 0;           ///< where it is along the camera's fourth axis [m]
-};
 
 /// The bodies as view rays from anywhere near the camera meet them: lenses, thick slices. What such
 /// a ray meets is three-dimensional, so Embree finds the candidates, over the exact bounds of the
@@ -31,8 +25,7 @@ class ViewScene {
               const SliceRange& range, double reach);
     ~ViewScene();
 
-    /// The nearest body that each ray meets within settings.max_distance; equal distances go to
-    /// the lower id.
+    /// What each ray meets first within settings.max_distance.
     /// @param rays   finite
     /// @param hits   as many
     void nearest(std::span<const ViewRay> rays, std::span<Hit> hits, FrameStats& stats) const;

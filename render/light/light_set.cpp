@@ -51,13 +51,12 @@ LightAt LightSet::at(const SphereLight& light, const Vec4& point, const Vec4& no
     return at;
 }
 
-LightSet::Seen LightSet::first_sphere(const Vec4& origin, const Vec4& direction,
-                                      double limit) const {
+LightSet::Seen LightSet::first_sphere(const Ray& ray) const {
     Seen seen;
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-        const double t =
-            ray_hit(Hypersphere{spheres[i].radius}, origin - spheres[i].position, direction);
-        if (t < limit && t < seen.distance) seen = {i, t};
+        const Vec4 origin = ray.origin - spheres[i].position;
+        const double t = ray_hit(Hypersphere{spheres[i].radius}, origin, ray.direction);
+        if (t < ray.limit && t < seen.distance) seen = {i, t};
     }
     return seen;
 }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/shadow.hpp"
+#include "render/light/light_disc.hpp"
 
 namespace tesserae::render {
 
@@ -36,8 +36,8 @@ struct LightSet {
         std::uint32_t sphere = kNone;
         double distance = kMiss;
     };
-    /// The nearest sphere light that a ray meets before `limit` [m].
-    Seen first_sphere(const Vec4& origin, const Vec4& direction, double limit) const;
+    /// The nearest sphere light that a ray meets before its limit.
+    Seen first_sphere(const Ray& ray) const;
 };
 
 }  // namespace tesserae::render

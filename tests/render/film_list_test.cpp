@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "render/view_ray.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -45,15 +46,10 @@ TEST(FilmList, FindsWhatTryingAllBodiesFinds) {
             for (int i = 0; i < 100; ++i) {
                 const Vec3 view = camera.ray_direction(
                     {uniform(random, x0, x0 + 8), uniform(random, y0, y0 + 8)});
-                const Vec4 world = camera.to_world({view.x(), view.y(), view.z(), 0});
-                Hit best;
-                for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-                    const double t =
-                        hit_distance(placed, b, Vec4::Zero(), world, scene.settings.max_distance,
-                                     scene.settings, stats);
-                    if (t < best.distance) best = {t, b};
-                }
-                const Hit hit = list.nearest(placed, view, world, scene.settings, stats);
+                const Ray ray =
+                    world_ray({Vec3::Zero(), view}, camera, scene.settings.max_distance);
+                const Hit best = nearest_of_all(placed, ray, scene.settings, stats);
+                const Hit hit = list.nearest(placed, view, ray, scene.settings, stats);
                 hit_count += best ? 1 : 0;
                 ASSERT_EQ(hit.distance, best.distance) << round;
                 ASSERT_EQ(hit.body, best.body) << round;
@@ -78,7 +74,8 @@ TEST(FilmList, EqualDistancesGoToTheLowerId) {
     FrameStats stats;
     for (Intersector intersector : {Intersector::kTrace, Intersector::kAnalytic}) {
         scene.settings.intersector = intersector;
-        const Hit hit = list.nearest(placed, Vec3::UnitZ(), Vec4::UnitZ(), scene.settings, stats);
+        const Hit hit = list.nearest(placed, Vec3::UnitZ(), {Vec4::Zero(), Vec4::UnitZ()},
+                                     scene.settings, stats);
         EXPECT_EQ(hit.distance, 4);
         EXPECT_EQ(hit.body, 0u);
     }

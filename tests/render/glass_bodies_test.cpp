@@ -56,23 +56,23 @@ TEST(GlassBodies, ListsLoseNoBody) {
     for (int round = 0; round < 20; ++round) {
         const Placed p(glass_cloud(random, 60));
         for (int i = 0; i < 4000; ++i) {
-            const Vec4 origin = random_vector(random, 4), direction = random_direction(random);
+            const Vec4 origin = random_vector(random, 4);
+            const Ray ray = {origin, random_direction(random)};
             const std::uint32_t medium = p.medium_at(origin, GlassBodies::kNone);
             if (medium == GlassBodies::kNone) continue;
-            const auto event = p.glass.next(medium, origin, direction, GlassBodies::kNone, p.stats);
+            const auto event = p.glass.next(medium, ray, p.stats);
 
             double inside = 0, outside = 1e8;
-            const bool leaves = p.distance(medium, origin + outside * direction) > 0;
+            const bool leaves = p.distance(medium, ray.at(outside)) > 0;
             for (int k = 0; k < 100 && leaves; ++k) {
                 const double middle = 0.5 * (inside + outside);
-                (p.distance(medium, origin + middle * direction) > 0 ? outside : inside) = middle;
+                (p.distance(medium, ray.at(middle)) > 0 ? outside : inside) = middle;
             }
             double expected = leaves ? inside : kMiss;
             bool is_exit = leaves;
             for (std::uint32_t b = 0; b < p.placed.bodies.size(); ++b) {
                 if (b == medium || (p.is_glass(b) && b > medium)) continue;
-                const double t =
-                    hit_distance(p.placed, b, origin, direction, kMiss, p.scene.settings, p.stats);
+                const double t = hit_distance(p.placed, b, ray, p.scene.settings, p.stats);
                 if (t < expected) expected = t, is_exit = false;
             }
             if (expected == kMiss) {
@@ -84,7 +84,7 @@ TEST(GlassBodies, ListsLoseNoBody) {
             ASSERT_EQ(event.is_exit, is_exit) << round << " " << i;
             (is_exit ? exits : hits) += 1;
             if (!is_exit) continue;
-            const Vec4 point = origin + event.hit.distance * direction;
+            const Vec4 point = ray.at(event.hit.distance);
             const std::uint32_t next = p.glass.medium_beyond(medium, point);
             EXPECT_EQ(next, p.medium_at(point, medium)) << round << " " << i;
             beyond += next != GlassBodies::kNone;

@@ -21,10 +21,11 @@ struct BothHits {
 BothHits hits(const PlacedBodies& placed, const Vec4& origin, const Vec4& direction,
               double limit = 200) {
     Settings settings;
+    const Ray ray = {origin, direction, kNoBody, limit};
     BothHits both;
-    both.traced = hit_distance(placed, 0, origin, direction, limit, settings, both.stats);
+    both.traced = hit_distance(placed, 0, ray, settings, both.stats);
     settings.intersector = Intersector::kAnalytic;
-    both.exact = hit_distance(placed, 0, origin, direction, limit, settings, both.stats);
+    both.exact = hit_distance(placed, 0, ray, settings, both.stats);
     return both;
 }
 
@@ -180,14 +181,14 @@ TEST(HitDistance, StepsUsedUpAreCountedHits) {
     Settings settings;
     settings.max_steps = 1;
     FrameStats stats;
-    const Vec4 origin(0.3, 0.4, -10, 0.2);
-    const double t = hit_distance(placed, 0, origin, Vec4::UnitZ(), 200, settings, stats);
+    const Ray ray = {Vec4(0.3, 0.4, -10, 0.2), Vec4::UnitZ()};
+    const double t = hit_distance(placed, 0, ray, settings, stats);
     EXPECT_EQ(stats.unresolved, 1u);
     EXPECT_EQ(stats.distance_evaluations, 1u);
     // Where it stands: never past the surface.
     EXPECT_LE(t, 9);
     settings.max_steps = 2;
-    EXPECT_NEAR(hit_distance(placed, 0, origin, Vec4::UnitZ(), 200, settings, stats), 9, 1e-12);
+    EXPECT_NEAR(hit_distance(placed, 0, ray, settings, stats), 9, 1e-12);
     EXPECT_EQ(stats.unresolved, 1u);
 }
 

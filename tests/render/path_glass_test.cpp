@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "render/material/dielectric.hpp"
-#include "render/path.hpp"
 #include "tests/render/traced_scene.hpp"
 
 namespace tesserae::render {

@@ -1,4 +1,4 @@
-#include "render/path.hpp"
+#include "render/integrator/path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -140,7 +140,7 @@ TEST(Path, DirectLightIsTheClosedForms) {
         const Color expected = TracedScene(scene).radiance(direction, Sampler(0, 0, 0));
         scene.settings.integrator = Integrator::kPath;
         const TracedScene traced(scene);
-        if (traced.lights.first_sphere(Vec4::Zero(), direction, kMiss).sphere != LightSet::kNone)
+        if (traced.lights.first_sphere({Vec4::Zero(), direction}).sphere != LightSet::kNone)
             continue;
         const Mean found = mean_radiance(traced, direction, is_hard ? 2 : 4000);
         for (int c = 0; c < 3; ++c) {
@@ -150,37 +150,38 @@ TEST(Path, DirectLightIsTheClosedForms) {
     }
 }
 
-/// Another integrator: uniform directions of the hemisphere, no light is chosen, nothing but what
-/// the ray runs into counts, every body is tried.
-Color reference(const TracedScene& t, const Vec4& origin, const Vec4& direction, std::uint32_t on,
-                int scattered, Random& random) {
-    const Hit hit = t.nearest(origin, direction, on);
+/// The reference of PathIntegrator, without mirrors and glass: one path at a time, by recursion, in
+/// uniform directions of the hemisphere. No light is chosen, nothing but what the ray runs into
+/// counts, every body is tried.
+Color path_reference(const TracedScene& t, const Ray& ray, int scattered, Random& random) {
+    const std::optional<Surface> met = t.first(ray);
     for (const SphereLight& l : t.scene.lights.spheres)
-        if (ray_hit(Hypersphere{l.radius}, origin - l.position, direction) < hit.distance)
+        if (ray_hit(Hypersphere{l.radius}, ray.origin - l.position, ray.direction) <
+            (met ? met->distance : kMiss))
             return l.radiance;
-    if (!hit) {
+    if (!met) {
         Color light = t.scene.lights.sky;
         for (const Sun& sun : t.scene.lights.suns) {
             const double angle = sun.angle * pi / 180;
-            if (scattered > 0 && -sun.direction.dot(direction) > std::cos(angle))
+            if (scattered > 0 && -sun.direction.dot(ray.direction) > std::cos(angle))
                 light += sun.irradiance / (4 * pi / 3 * std::pow(std::sin(angle), 3));
         }
         return light;
     }
-    const Surface s = t.shading.surface(hit, origin, direction);
+    const Surface& s = *met;
     if (scattered > t.scene.settings.bounces) return s.material->emission;
     Vec4 next = random_direction(random);
     if (next.dot(s.normal) < 0) next = -next;
     Color brdf = s.albedo * (3 / (4 * pi));
     if (s.material->kind == MaterialKind::kRough) {
         const TangentFrame frame(s.normal);
-        brdf = s.rough->brdf(s.albedo, frame.to_local(-direction), frame.to_local(next));
+        brdf = s.rough->brdf(s.albedo, frame.to_local(-ray.direction), frame.to_local(next));
     }
-    return s.material->emission + brdf * next.dot(s.normal) * pi * pi *
-                                      reference(t, s.point, next, s.body, scattered + 1, random);
+    const Color from_next = path_reference(t, {s.point, next, s.body}, scattered + 1, random);
+    return s.material->emission + brdf * next.dot(s.normal) * pi * pi * from_next;
 }
 
-TEST(Path, AgreesWithAnIntegratorThatChoosesNoLights) {
+TEST(Path, AgreesWithItsReference) {
     // 40 rays into a scene with every kind of light that a ray can run into, diffuse and rough
     // bodies that shade and light each other; the greatest of 120 differences of two means in units
     // of its deviation stays below 4.5 with probability 0.999.
@@ -210,7 +211,7 @@ TEST(Path, AgreesWithAnIntegratorThatChoosesNoLights) {
         const Mean found = mean_radiance(traced, direction, 3000);
         Mean expected;
         for (int k = 0; k < 12000; ++k)
-            expected.add(reference(traced, Vec4::Zero(), direction, RayScene::kNoBody, 0, random));
+            expected.add(path_reference(traced, {Vec4::Zero(), direction}, 0, random));
         for (int c = 0; c < 3; ++c) {
             const double sigma = std::hypot(found.sigma()[c], expected.sigma()[c]);
             const double difference = found.mean()[c] - expected.mean()[c];
@@ -330,17 +331,17 @@ TEST(Path, PathsSideBySideBringWhatEachBringsAlone) {
         const TracedScene traced(scene);
         constexpr std::size_t kPaths = 200;
         std::vector<std::optional<Surface>> met(kPaths);
-        std::vector<LightTransport::Start> starts;
+        std::vector<ViewSample> samples;
         std::vector<Color> expected;
         for (std::size_t i = 0; i < kPaths; ++i) {
-            const Vec4 direction = random_direction(random);
+            const Ray ray = {Vec4::Zero(), random_direction(random)};
             const Sampler sampler(static_cast<int>(i), 0, 0);
-            met[i] = traced.first(direction);
-            starts.push_back({met[i] ? &*met[i] : nullptr, Vec4::Zero(), direction, sampler});
-            expected.push_back(traced.radiance(direction, sampler));
+            met[i] = traced.first(ray);
+            samples.push_back({met[i] ? &*met[i] : nullptr, ray, sampler});
+            expected.push_back(traced.radiance(ray.direction, sampler));
         }
         std::vector<Color> found(kPaths);
-        traced.transport.radiance(starts, found, traced.stats);
+        traced.integrator->radiance(samples, found, traced.stats);
         for (std::size_t i = 0; i < kPaths; ++i)
             EXPECT_TRUE((found[i] == expected[i]).all()) << i << ": " << found[i].transpose();
     }

@@ -14,40 +14,28 @@
 namespace tesserae::render {
 namespace {
 
-/// What RayScene::nearest promises, by trying every body.
-Hit nearest_of_all(const PlacedBodies& placed, const Vec4& origin, const Vec4& direction,
-                   double limit, std::uint32_t on, const Settings& settings) {
-    Hit best;
-    FrameStats stats;
-    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-        if (b == on) continue;
-        const double t = hit_distance(placed, b, origin, direction, limit, settings, stats);
-        if (t < best.distance) best = {t, b};
-    }
-    return best;
-}
-
 struct Rays {
     int traced = 0, hit = 0;
-    std::vector<RayScene::Ray> all;  ///< to be traced once more, side by side
+    std::vector<Ray> all;  ///< to be traced once more, side by side
     std::vector<Hit> expected;
 };
 
 /// Compares one ray both ways, with and without a limit and a body left out.
 void compare(const TestScene& scene, const PlacedBodies& placed, const RayScene& rays,
-             const Vec4& origin, const Vec4& direction, double limit, std::uint32_t on,
-             Rays& count) {
+             const Ray& ray, Rays& count) {
     FrameStats stats;
-    const Hit expected = nearest_of_all(placed, origin, direction, limit, on, scene.settings);
-    const Hit hit = rays.nearest({origin, direction, on, limit}, stats);
-    ASSERT_EQ(hit.distance, expected.distance)
-        << origin.transpose() << " toward " << direction.transpose();
-    ASSERT_EQ(hit.body, expected.body) << origin.transpose() << " toward " << direction.transpose();
-    ASSERT_EQ(rays.is_blocked(origin, direction, limit, on, stats), bool(expected))
-        << origin.transpose() << " toward " << direction.transpose();
+    const Hit expected = nearest_of_all(placed, ray, scene.settings, stats);
+    const Hit hit = rays.nearest(ray, stats);
+    const auto is_as_expected = [&] {
+        return hit.distance == expected.distance && hit.body == expected.body &&
+               rays.is_blocked(ray, stats) == bool(expected);
+    };
+    ASSERT_TRUE(is_as_expected()) << ray.origin.transpose() << " toward "
+                                  << ray.direction.transpose() << ": body " << hit.body << " at "
+                                  << hit.distance;
     ++count.traced;
     count.hit += expected ? 1 : 0;
-    count.all.push_back({origin, direction, on, limit});
+    count.all.push_back(ray);
     count.expected.push_back(expected);
 }
 
@@ -102,8 +90,8 @@ void compare_many(TestScene& scene, std::uint64_t seed, int rays_each, double sp
             }
             const double limit = i % 3 == 0 ? uniform(random, 0, spread) : kMiss;
             const std::uint32_t on =
-                i % 5 == 0 ? static_cast<std::uint32_t>(random() % bodies) : RayScene::kNoBody;
-            compare(scene, placed, rays, origin, direction, limit, on, count);
+                i % 5 == 0 ? static_cast<std::uint32_t>(random() % bodies) : kNoBody;
+            compare(scene, placed, rays, {origin, direction, on, limit}, count);
             if (::testing::Test::HasFatalFailure()) return;
         }
         compare_side_by_side(rays, count);
@@ -178,7 +166,7 @@ TEST(RayScene, BodiesInOnePlaceAndOnAGrid) {
         for (int k = 0; k < 4; ++k) origin[k] = 0.5 * static_cast<double>(random() % 13) - 1;
         const Vec4 direction = i % 2 == 0 ? any_direction(random)
                                           : Vec4((i % 4 == 1 ? -1 : 1) * Vec4::Unit(random() % 4));
-        compare(grid, placed, rays, origin, direction, kMiss, RayScene::kNoBody, count);
+        compare(grid, placed, rays, {origin, direction}, count);
         if (HasFatalFailure()) return;
     }
     compare_side_by_side(rays, count);
@@ -196,10 +184,9 @@ TEST(RayScene, NoBodiesOneBodyOnlyPlanes) {
         FrameStats stats;
         const Hit hit = rays.nearest({Vec4::Zero(), Vec4::UnitZ()}, stats);
         EXPECT_EQ(hit.distance, kind == 0 ? kMiss : 4);
-        EXPECT_EQ(rays.is_blocked(Vec4::Zero(), Vec4::UnitZ(), kMiss, RayScene::kNoBody, stats),
-                  kind != 0);
+        EXPECT_EQ(rays.is_blocked({Vec4::Zero(), Vec4::UnitZ()}, stats), kind != 0);
         EXPECT_FALSE(rays.nearest({Vec4::Zero(), -Vec4::UnitZ()}, stats));
-        EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), RayScene::kNoBody, 3.9}, stats));
+        EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), kNoBody, 3.9}, stats));
         if (kind != 0) {
             EXPECT_FALSE(rays.nearest({Vec4::Zero(), Vec4::UnitZ(), 0}, stats));
         }

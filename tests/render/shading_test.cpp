@@ -26,13 +26,8 @@ Shaded shade(const TestScene& scene, const Vec4& direction) {
     const RoughReflections rough(picture.materials);
     const Shading shading(picture, placed, tree, lights, rough);
     Shaded s;
-    Hit hit;
-    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-        const double t =
-            hit_distance(placed, b, Vec4::Zero(), direction, kMiss, scene.settings, s.stats);
-        if (t < hit.distance) hit = {t, b};
-    }
-    s.surface = shading.surface(hit, Vec4::Zero(), direction);
+    const Ray ray = {Vec4::Zero(), direction};
+    s.surface = shading.surface(nearest_of_all(placed, ray, scene.settings, s.stats), ray);
     s.radiance = shading.radiance(s.surface, -direction, s.stats);
     return s;
 }

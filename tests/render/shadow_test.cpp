@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "render/camera.hpp"
-#include "render/ray_scene.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -44,8 +43,8 @@ TEST(RimSine, OfABallIsTheAngleToItsRim) {
         scene.add(Hypersphere{radius}, centre);
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
         // acos loses half of long double's digits at worst: 1e-9.
-        EXPECT_NEAR(rim_sine(placed, 0, Vec4::Zero(), d, {}, stats), ball_rim(centre, radius, d),
-                    1e-8);
+        EXPECT_NEAR(rim_sine(placed, 0, {Vec4::Zero(), d}, -1, 1, stats),
+                    ball_rim(centre, radius, d), 1e-8);
     }
     EXPECT_EQ(stats.distance_evaluations, 0u);
 }
@@ -78,7 +77,7 @@ TEST(RimSine, IsTheLeastRatioOfDistanceAlongTheRay) {
             (ratio(u) < ratio(v) ? b : a) = ratio(u) < ratio(v) ? v : u;
         }
         const double expected = std::min(ratio(a), ratio(best));
-        const double found = rim_sine(placed, 0, Vec4::Zero(), d, {-widest, widest}, stats);
+        const double found = rim_sine(placed, 0, {Vec4::Zero(), d}, -widest, widest, stats);
         if (std::abs(expected) < widest) {
             ++inside_cone;
             // Golden section on rounded values finds the least to rounding of distance/t.
@@ -94,15 +93,19 @@ TEST(RimSine, IsTheLeastRatioOfDistanceAlongTheRay) {
 TEST(RimSine, InsideAndBehind) {
     FrameStats stats;
     // Narrower than any of the bodies looks from 9 m.
-    const RimRange range = {-0.01, 0.01};
+    constexpr double kWidest = 0.01;
+    const Vec4 x = Vec4::UnitX();
     for (int kind = 0; kind < 3; ++kind) {
         Random random(34);
         TestScene scene;
         scene.add(random_shape(random, kind, 1), Vec4::Zero());
         const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
-        EXPECT_EQ(rim_sine(placed, 0, Vec4::Zero(), Vec4::UnitX(), range, stats), -1);
-        EXPECT_GE(rim_sine(placed, 0, 9 * Vec4::UnitX(), Vec4::UnitX(), range, stats), range.high);
-        EXPECT_LE(rim_sine(placed, 0, 9 * Vec4::UnitX(), -Vec4::UnitX(), range, stats), range.low);
+        const auto sine = [&](const Vec4& origin, const Vec4& direction) {
+            return rim_sine(placed, 0, {origin, direction}, -kWidest, kWidest, stats);
+        };
+        EXPECT_EQ(sine(Vec4::Zero(), x), -1);
+        EXPECT_GE(sine(9 * x, x), kWidest);
+        EXPECT_LE(sine(9 * x, -x), -kWidest);
     }
 }
 
@@ -168,9 +171,9 @@ TEST(SunVisibility, BehindAPlaneMatchesRays) {
             const double height = x * angle * kDegree;
             const Vec4 toward(0.6 * std::cos(height), std::sin(height), 0, 0.8 * std::cos(height));
             FrameStats stats;
-            const double visible = Shadows(placed, BodyTree(placed))
-                                       .visibility(sun_disc(sun_at(toward, angle)), Vec4::Zero(),
-                                                   RayScene::kNoBody, stats);
+            const double visible =
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(toward, angle)), Vec4::Zero(), kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle * kDegree, kCount,
                                                 [](const Vec4& d) { return d.y() < 0; });
             EXPECT_NEAR(visible, rays, 5 * 0.5 / std::sqrt(kCount) + std::pow(angle * kDegree, 2))
@@ -195,9 +198,9 @@ TEST(SunVisibility, BehindALargeSphereMatchesRays) {
             scene.add(Hypersphere{radius}, centre);
             const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
             FrameStats stats;
-            const double visible = Shadows(placed, BodyTree(placed))
-                                       .visibility(sun_disc(sun_at(toward, 2)), Vec4::Zero(),
-                                                   RayScene::kNoBody, stats);
+            const double visible =
+                Shadows(placed, BodyTree(placed))
+                    .visibility(sun_disc(sun_at(toward, 2)), Vec4::Zero(), kNoBody, stats);
             const double rays = visible_by_rays(random, toward, angle, kCount, [&](const Vec4& d) {
                 return d.w() > std::cos(alpha * kDegree);
             });
@@ -214,7 +217,7 @@ TEST(SunVisibility, OfASmallSphereIsItsRimsFormula) {
     FrameStats stats;
     const double visible =
         Shadows(placed, BodyTree(placed))
-            .visibility(sun_disc(sun_at(Vec4::UnitW(), 2)), Vec4::Zero(), RayScene::kNoBody, stats);
+            .visibility(sun_disc(sun_at(Vec4::UnitW(), 2)), Vec4::Zero(), kNoBody, stats);
     EXPECT_NEAR(visible, visible_part(-std::asin(0.01) / (2 * kDegree)), 1e-12);
 }
 
@@ -236,7 +239,8 @@ TEST(RimSine, OfALimitedRayIsTheLeastRatioBeforeTheLimit) {
                 .normalized();
         const double limit = uniform(random, 0.5, 6);
         FrameStats stats;
-        const double found = rim_sine(placed, 0, Vec4::Zero(), toward, {-1, 1, limit}, stats);
+        const double found =
+            rim_sine(placed, 0, {Vec4::Zero(), toward, kNoBody, limit}, -1, 1, stats);
         const auto ratio = [&](double t) {
             return std::visit(
                        [&](const auto& s) {
@@ -282,7 +286,7 @@ TEST(Shadows, TreeLosesNoBody) {
             double least = 1;
             for (std::uint32_t b = 0; b < placed.bodies.size(); ++b)
                 if (b != on)
-                    least = std::min(least, rim_sine(placed, b, point, sun.toward, {}, stats));
+                    least = std::min(least, rim_sine(placed, b, {point, sun.toward}, -1, 1, stats));
             const double expected =
                 angle == 0 ? (least > 0) : visible_part(std::asin(least) / sun.angle);
             // asin of the cone's own sine may round to just inside the cone.
@@ -327,15 +331,13 @@ TEST(Shadows, SharedSurfacesAreLit) {
         for (double angle : {0.0, 2.0}) {
             // A soft sun is whole from its own half-angle above the surface on.
             if (toward.dot(normal) < std::sin(2.1 * kDegree)) continue;
-            EXPECT_EQ(
-                Shadows(placed, BodyTree(placed))
-                    .visibility(sun_disc(sun_at(toward, angle)), point, RayScene::kNoBody, stats),
-                1)
+            EXPECT_EQ(Shadows(placed, BodyTree(placed))
+                          .visibility(sun_disc(sun_at(toward, angle)), point, kNoBody, stats),
+                      1)
                 << i;
-            EXPECT_EQ(
-                Shadows(placed, BodyTree(placed))
-                    .visibility(sun_disc(sun_at(-toward, angle)), point, RayScene::kNoBody, stats),
-                0)
+            EXPECT_EQ(Shadows(placed, BodyTree(placed))
+                          .visibility(sun_disc(sun_at(-toward, angle)), point, kNoBody, stats),
+                      0)
                 << i;
         }
     }
@@ -350,11 +352,11 @@ TEST(Shadows, ThatLeaveTheSliceFindBodiesOutsideIt) {
     const Shadows shadows(placed, tree);
     FrameStats stats;
     for (double angle : {0.0, 5.0}) {
-        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(Vec4::UnitW(), angle)), Vec4::Zero(),
-                                     RayScene::kNoBody, stats),
+        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(Vec4::UnitW(), angle)), Vec4::Zero(), kNoBody,
+                                     stats),
                   0);
-        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(-Vec4::UnitW(), angle)), Vec4::Zero(),
-                                     RayScene::kNoBody, stats),
+        EXPECT_EQ(shadows.visibility(sun_disc(sun_at(-Vec4::UnitW(), angle)), Vec4::Zero(), kNoBody,
+                                     stats),
                   1);
     }
 }

@@ -11,6 +11,7 @@
 #include "render/film_list.hpp"
 #include "render/intersect.hpp"
 #include "render/tiles.hpp"
+#include "render/view_ray.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -77,8 +78,8 @@ TEST(SliceBounds, HoldEveryHit) {
             const Vec3 view = camera.ray_direction(film);
             const Vec4 world = camera.to_world({view.x(), view.y(), view.z(), 0});
             for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-                const double t =
-                    hit_distance(placed, b, Vec4::Zero(), world, 200, scene.settings, stats);
+                const double t = hit_distance(placed, b, {Vec4::Zero(), world, kNoBody, 200},
+                                              scene.settings, stats);
                 if (t == kMiss) continue;
                 ++hit_count;
                 const auto s = std::find_if(slice.begin(), slice.end(),
@@ -220,15 +221,10 @@ TEST(TileSource, ListsLoseNoBody) {
                 const Vec2 film(uniform(random, tile->x0, tile->x1),
                                 uniform(random, tile->y0, tile->y1));
                 const Vec3 view = camera.ray_direction(film);
-                const Vec4 world = camera.to_world({view.x(), view.y(), view.z(), 0});
-                Hit best;
-                for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-                    const double t =
-                        hit_distance(placed, b, Vec4::Zero(), world, scene.settings.max_distance,
-                                     scene.settings, stats);
-                    if (t < best.distance) best = {t, b};
-                }
-                const Hit hit = list.nearest(placed, view, world, scene.settings, stats);
+                const Ray ray =
+                    world_ray({Vec3::Zero(), view}, camera, scene.settings.max_distance);
+                const Hit best = nearest_of_all(placed, ray, scene.settings, stats);
+                const Hit hit = list.nearest(placed, view, ray, scene.settings, stats);
                 hit_count += hit ? 1 : 0;
                 EXPECT_EQ(hit.distance, best.distance);
                 EXPECT_EQ(hit.body, best.body);

@@ -12,18 +12,8 @@ namespace {
 
 Hit nearest_of_all(const PlacedBodies& placed, const Camera& camera, const ViewRay& ray,
                    const Settings& settings) {
-    const Vec4 origin =
-        camera.to_world({ray.origin.x(), ray.origin.y(), ray.origin.z(), ray.fourth});
-    const Vec4 direction =
-        camera.to_world({ray.direction.x(), ray.direction.y(), ray.direction.z(), 0});
-    Hit best;
     FrameStats stats;
-    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-        const double t =
-            hit_distance(placed, b, origin, direction, settings.max_distance, settings, stats);
-        if (t < best.distance) best = {t, b};
-    }
-    return best;
+    return nearest_of_all(placed, world_ray(ray, camera, settings.max_distance), settings, stats);
 }
 
 /// Rays from a lens of radius `aperture` through the film, within `range` along the fourth axis;
