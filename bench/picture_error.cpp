@@ -15,8 +15,8 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "render/ray_scene.hpp"
-#include "render/tile_image.hpp"
+#include "render/scene/ray_scene.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -162,7 +162,7 @@ class Light {
     /// @param sampler   of the light's random numbers
     Color along(const Vec2& film, const Sampler& sampler) {
         const Instant& instant = frame_.opening();
-        const Ray ray = world_ray(instant.rays.middle({0, 0, 0}, film), instant.camera, kMiss);
+        const Ray ray = instant.camera.to_world(instant.rays.middle({0, 0, 0}, film), kMiss);
         const Hit hit = rays_.nearest(ray, stats_);
         const auto surface = hit ? std::optional(instant.shading.surface(hit, ray)) : std::nullopt;
         const ViewSample from = {surface ? &*surface : nullptr, ray, sampler};

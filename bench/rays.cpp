@@ -15,13 +15,13 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "parallel/threads.hpp"
-#include "render/embree.hpp"
-#include "render/film_list.hpp"
-#include "render/lanes.hpp"
-#include "render/ray_scene.hpp"
-#include "render/shadow.hpp"
-#include "render/tile_image.hpp"
-#include "render/view_scene.hpp"
+#include "render/light/shadow.hpp"
+#include "render/scene/embree.hpp"
+#include "render/scene/film_list.hpp"
+#include "render/scene/lanes.hpp"
+#include "render/scene/ray_scene.hpp"
+#include "render/scene/view_scene.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -235,8 +235,8 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
             for (int x = window.x0; x < window.x1; ++x) {
                 const Settings& settings = scene.picture().settings;
                 const Vec3 view = scene.opening().camera.ray_direction({x + 0.5, y + 0.5});
-                const Ray ray =
-                    world_ray({Vec3::Zero(), view}, scene.opening().camera, settings.max_distance);
+                const Ray ray = scene.opening().camera.to_world(ViewRay{Vec3::Zero(), view},
+                                                                settings.max_distance);
                 const Hit hit = list.nearest(scene.opening().placed, view, ray, settings, m.stats);
                 if (hit) surfaces.push_back(scene.opening().shading.surface(hit, ray));
             }

@@ -12,7 +12,7 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "render/intersect.hpp"
+#include "render/scene/intersect.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kDistance = 8;  ///< of the rays' origins from the body's centr
 constexpr int kRepeats = 3;
 constexpr int kMostPlainSteps = 20'000;
 constexpr int kMaxSteps = 200;                ///< the scene format's default
-constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/intersect.cpp
+constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/scene/intersect.cpp
 constexpr std::array<int, 9> kSteps = {1, 2, 3, 4, 6, 8, 16, 64, 200};
 
 /// A body about the origin and rays toward it, of which some miss.
@@ -68,8 +68,8 @@ struct Target {
     Target(const Target&) = delete;
 };
 
-/// The loop of render/intersect.cpp with its tolerance as an argument; `is_plain` steps by the
-/// distance alone, as sphere tracing is usually written.
+/// The loop of render/scene/intersect.cpp with its tolerance as an argument; `is_plain` steps by
+/// the distance alone, as sphere tracing is usually written.
 template <class S>
 double traced(const S& shape, const Ray& ray, double radius, double tolerance, bool is_plain,
               FrameStats& stats) {

@@ -1,6 +1,4 @@
-#include "render/integrator/direct.hpp"
-
-#include "render/material/bsdf.hpp"
+#include "render/integrator/integrator.hpp"
 
 namespace tesserae::render {
 
@@ -11,21 +9,24 @@ void DirectIntegrator::radiance(std::span<const ViewSample> samples, std::span<C
         const Surface* first = samples[i].first;
         // The usual view ray ends where it is: a path of it would only take time.
         if (!lights_.spheres.empty() || (first && is_specular(*first->material)))
-            wave.add(paths_.begin(samples[i], i));
+            begin(wave, samples[i], i);
         else
             colors[i] =
                 first ? shading_.radiance(*first, -samples[i].ray.direction, stats) : lights_.sky;
     }
     for (int scattered = 0; !wave.live.empty(); ++scattered) {
-        wave.scatter_each([&](LightPath& path) { return scatter(path, scattered, stats); });
-        paths_.trace(wave, stats);
+        std::erase_if(wave.live,
+                      [&](std::uint32_t i) { return !scatter(wave.paths[i], scattered, stats); });
+        trace(wave, stats);
     }
-    wave.write_sums(colors);
+    for (const LightPath& path : wave.paths) colors[path.sample] = path.sum;
 }
 
+/// Adds what comes from where a path has arrived after so many scatterings, and sends it on. False
+/// where it ends.
 bool DirectIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats) const {
     if (!path.meets_surface()) {
-        path.sum += path.throughput * paths_.light_seen(path);
+        path.sum += path.throughput * light_seen(path);
         return false;
     }
     const Surface& surface = *path.surface;
@@ -37,9 +38,9 @@ bool DirectIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats
     path.sum += path.throughput * surface.material->emission;
     if (is_last) return false;
 
-    const auto u = path.sampler.group(paths_.group(scattered));
-    paths_.scatter_specular(path, u[0]);
-    return paths_.survives(path, scattered, u[3]);
+    const auto u = path.sampler.group(first_group(scattered));
+    scatter_specular(path, u[0]);
+    return survives(path, scattered, u[3]);
 }
 
 }  // namespace tesserae::render

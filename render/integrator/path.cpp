@@ -1,5 +1,4 @@
-#include "render/integrator/path.hpp"
-
+#include "render/integrator/integrator.hpp"
 #include "render/light/cap.hpp"
 
 namespace tesserae::render {
@@ -16,27 +15,30 @@ Color clamped(const Color& light, double most) {
 void PathIntegrator::radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                               FrameStats& stats) const {
     PathWave wave;
-    for (std::uint32_t i = 0; i < samples.size(); ++i) wave.add(paths_.begin(samples[i], i));
+    for (std::uint32_t i = 0; i < samples.size(); ++i) begin(wave, samples[i], i);
     for (int scattered = 0; !wave.live.empty(); ++scattered) {
-        wave.scatter_each([&](LightPath& path) { return scatter(path, scattered, stats); });
-        paths_.trace(wave, stats);
+        std::erase_if(wave.live,
+                      [&](std::uint32_t i) { return !scatter(wave.paths[i], scattered, stats); });
+        trace(wave, stats);
     }
-    wave.write_sums(colors);
+    for (const LightPath& path : wave.paths) colors[path.sample] = path.sum;
 }
 
+/// Adds what comes from where a path has arrived after so many scatterings, and sends it on. False
+/// where it ends.
 bool PathIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats) const {
     if (!path.meets_surface()) {
-        add(path, paths_.light_seen(path), path.since_rough > 1);
+        add(path, light_seen(path), path.since_rough > 1);
         return false;
     }
     const Surface& surface = *path.surface;
     add(path, surface.material->emission, path.since_rough > 1);
     if (scattered > settings_.bounces) return false;
 
-    const std::uint32_t group = paths_.group(scattered);
+    const std::uint32_t group = first_group(scattered);
     const auto u = path.sampler.group(group);
     if (is_specular(*surface.material)) {
-        paths_.scatter_specular(path, u[0]);
+        scatter_specular(path, u[0]);
         if (path.since_rough > 0) ++path.since_rough;
     } else {
         const Bsdf bsdf(surface, -path.ray.direction);
@@ -48,10 +50,10 @@ bool PathIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats) 
                 path.since_rough > 0);
         const Bsdf::Sample next = bsdf.sample({u[0], u[1], u[2]});
         path.throughput *= next.weight;
-        path.leave(next.in, path.is_in_glass() ? 0 : next.density);
+        leave(path, next.in, path.is_in_glass() ? 0 : next.density);
         ++path.since_rough;
     }
-    return paths_.survives(path, scattered, u[3]);
+    return survives(path, scattered, u[3]);
 }
 
 void PathIntegrator::add(LightPath& path, const Color& light, bool is_indirect) const {
@@ -103,9 +105,9 @@ Color PathIntegrator::light_of_spheres_and_suns(const Surface& s, const Bsdf& bs
     return sum;
 }
 
-bool PathIntegrator::is_lit(const Ray& ray, FrameStats& stats) const {
+bool PathIntegrator::is_lit(const Ray& toward_light, FrameStats& stats) const {
     ++stats.shadow_rays;
-    return !paths_.is_blocked(ray, stats);
+    return !scene_->is_blocked(toward_light, stats);
 }
 
 }  // namespace tesserae::render

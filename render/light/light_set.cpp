@@ -12,7 +12,20 @@ namespace {
 
 using std::numbers::pi;
 
+/// A sun smaller than this [rad] is hard: nobody sees the difference, and the radiance of its disc,
+/// which grows with the cube, would leave the range of double.
+constexpr double kHard = 1e-9;
+
 }  // namespace
+
+SunDisc sun_disc(const Sun& sun) {
+    double angle = sun.angle * (pi / 180);
+    if (angle < kHard) angle = 0;
+    SunDisc disc = {
+        {-sun.direction, angle, {std::sin(angle), std::cos(angle)}}, sun.irradiance, Color::Zero()};
+    if (angle > 0) disc.radiance = sun.irradiance / cap_irradiance(angle, pi / 2);
+    return disc;
+}
 
 LightSet::LightSet(const Lights& lights, const Vec4& camera_origin) : sky(lights.sky) {
     for (const Sun& sun : lights.suns)

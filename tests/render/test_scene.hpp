@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "render/intersect.hpp"
 #include "render/picture.hpp"
+#include "render/scene/intersect.hpp"
 
 namespace tesserae::render {
 
