@@ -56,8 +56,8 @@ class BodyTree {
     /// 1/1000 of the distance at most, which is twice what the roundings can make of it.
     static constexpr float kSquareSlack = 1e-6f;
 
-    /// Eight boxes; low > high where a lane is not used. A side is named by where its lane 0 is, as
-    /// in no other way the walks find it without arithmetic.
+    /// Eight boxes; low > high where a lane is not used. A side is named by the place of its lane
+    /// 0: the walks find it so without arithmetic.
     struct Boxes {
         /// The low sides along the first axis, the high sides, the low sides along the next one...
         alignas(Lanes) std::array<float, 8 * kLanes> sides;

@@ -28,8 +28,7 @@ class GlassBodies {
     /// What a ray inside the glass body `medium` meets next: a body in the glass, a glass that
     /// rules there, or the medium's own surface from inside (in closed form, whatever the
     /// intersector). No hit: it never leaves (an infinite half-space).
-    /// @param ray   without a limit; of the body that it is `on`, the medium is left by its far
-    /// side
+    /// @param ray   its limit does not count; if it is `on` the medium, it leaves by the far side
     Event next(std::uint32_t medium, Ray ray, FrameStats& stats) const;
 
     /// The medium just outside a glass body, at a point of its surface.

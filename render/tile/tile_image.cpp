@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "core/error.hpp"
+#include "render/integrator/integrator.hpp"
 #include "render/scene/film_list.hpp"
 #include "render/tile/pixel_estimate.hpp"
 #include "render/tile/sampler.hpp"
@@ -71,7 +74,7 @@ class TileRays {
     std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
     std::vector<ViewRay> rays_;
     std::vector<Hit> hits_;
-    std::vector<ViewSample> lit_;
+    std::vector<ViewSample> samples_;
     std::vector<Color> colors_;
 };
 
@@ -222,17 +225,17 @@ void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
 }
 
 void TileRays::find_radiance(const SampleNumber& first) {
-    lit_.clear();
+    samples_.clear();
     for (std::uint32_t i = 0; i < views_.size(); ++i)
-        lit_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
-                        Sampler(first.x, first.y, first.sample + i)});
+        samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
+                            Sampler(first.x, first.y, first.sample + i)});
     colors_.resize(views_.size());
     // Those of one instant together.
     for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {
         const Instant& instant = *views_[begin].instant;
         end = begin + 1;
         while (end < views_.size() && views_[end].instant == &instant) ++end;
-        instant.integrator->radiance(std::span(lit_).subspan(begin, end - begin),
+        instant.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
                                      std::span(colors_).subspan(begin, end - begin), stats);
     }
 }
