@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
 
-#include "render/path.hpp"
+#include "render/integrator/integrator.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -71,15 +72,15 @@ class Rays {
           lights_(s.lights, Vec4::Zero()),
           rough_(picture_.materials),
           shading_(picture_, placed_, tree_, lights_, rough_),
-          transport_(picture_, placed_, tree_, lights_, shading_),
+          integrator_(render::make_integrator(picture_, placed_, tree_, lights_, shading_)),
           scene_(placed_, tree_, settings_) {
         for (int i = 0; i < kRays; ++i)
             directions_.push_back(
                 Vec4(-0.7 + 1.4 * (i % 16) / 15, -1, -0.7 + 1.4 * (i / 16) / 15, 0).normalized());
         for (const Vec4& d : directions_) {
-            const auto hit = scene_.nearest({Vec4::Zero(), d}, stats_);
-            surfaces_.push_back(hit ? std::optional(shading_.surface(hit, Vec4::Zero(), d))
-                                    : std::nullopt);
+            const render::Ray ray = {Vec4::Zero(), d};
+            const auto hit = scene_.nearest(ray, stats_);
+            surfaces_.push_back(hit ? std::optional(shading_.surface(hit, ray)) : std::nullopt);
         }
     }
     Rays(const Rays&) = delete;
@@ -87,10 +88,10 @@ class Rays {
     double sample(int ray, int x, int y, int index) {
         const auto i = static_cast<std::size_t>(ray);
         const render::Sampler sampler(x, y, static_cast<std::uint32_t>(index));
-        const render::LightTransport::Start start = {surfaces_[i] ? &*surfaces_[i] : nullptr,
-                                                     Vec4::Zero(), directions_[i], sampler};
+        const render::ViewSample from = {
+            surfaces_[i] ? &*surfaces_[i] : nullptr, {Vec4::Zero(), directions_[i]}, sampler};
         render::Color color;
-        transport_.radiance({&start, 1}, {&color, 1}, stats_);
+        integrator_->radiance({&from, 1}, {&color, 1}, stats_);
         return color[0];
     }
 
@@ -124,7 +125,7 @@ class Rays {
     render::LightSet lights_;
     render::RoughReflections rough_;
     render::Shading shading_;
-    render::LightTransport transport_;
+    std::unique_ptr<const render::LightIntegrator> integrator_;
     render::RayScene scene_;
     std::vector<Vec4> directions_;
     std::vector<std::optional<render::Surface>> surfaces_;

@@ -15,8 +15,8 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "render/ray_scene.hpp"
-#include "render/tile_image.hpp"
+#include "render/scene/ray_scene.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -162,16 +162,12 @@ class Light {
     /// @param sampler   of the light's random numbers
     Color along(const Vec2& film, const Sampler& sampler) {
         const Instant& instant = frame_.opening();
-        const ViewRay ray = instant.rays.middle({0, 0, 0}, film);
-        const Vec4 d =
-            instant.camera.to_world({ray.direction.x(), ray.direction.y(), ray.direction.z(), 0});
-        const Hit hit = rays_.nearest({Vec4::Zero(), d}, stats_);
-        const auto surface =
-            hit ? std::optional(instant.shading.surface(hit, Vec4::Zero(), d)) : std::nullopt;
-        const LightTransport::Start start = {surface ? &*surface : nullptr, Vec4::Zero(), d,
-                                             sampler};
+        const Ray ray = instant.camera.to_world(instant.rays.middle({0, 0, 0}, film), kMiss);
+        const Hit hit = rays_.nearest(ray, stats_);
+        const auto surface = hit ? std::optional(instant.shading.surface(hit, ray)) : std::nullopt;
+        const ViewSample from = {surface ? &*surface : nullptr, ray, sampler};
         Color color;
-        instant.transport.radiance({&start, 1}, {&color, 1}, stats_);
+        instant.integrator->radiance({&from, 1}, {&color, 1}, stats_);
         return color;
     }
 

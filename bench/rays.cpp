@@ -15,12 +15,13 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "parallel/threads.hpp"
-#include "render/embree.hpp"
-#include "render/film_list.hpp"
-#include "render/lanes.hpp"
-#include "render/ray_scene.hpp"
-#include "render/tile_image.hpp"
-#include "render/view_scene.hpp"
+#include "render/light/shadow.hpp"
+#include "render/scene/embree.hpp"
+#include "render/scene/film_list.hpp"
+#include "render/scene/lanes.hpp"
+#include "render/scene/ray_scene.hpp"
+#include "render/scene/view_scene.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -232,13 +233,12 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
         list.fill(scene.slice(), tile.candidates, window);
         for (int y = window.y0; y < window.y1; ++y)
             for (int x = window.x0; x < window.x1; ++x) {
+                const Settings& settings = scene.picture().settings;
                 const Vec3 view = scene.opening().camera.ray_direction({x + 0.5, y + 0.5});
-                const Vec4 world =
-                    scene.opening().camera.to_world({view.x(), view.y(), view.z(), 0});
-                const Hit hit = list.nearest(scene.opening().placed, view, world,
-                                             scene.picture().settings, m.stats);
-                if (hit)
-                    surfaces.push_back(scene.opening().shading.surface(hit, Vec4::Zero(), world));
+                const Ray ray = scene.opening().camera.to_world(ViewRay{Vec3::Zero(), view},
+                                                                settings.max_distance);
+                const Hit hit = list.nearest(scene.opening().placed, view, ray, settings, m.stats);
+                if (hit) surfaces.push_back(scene.opening().shading.surface(hit, ray));
             }
     };
     m.time = time_of([&] {
@@ -302,7 +302,7 @@ Measured bounced(const RayScene& scene, const std::vector<Surface>& surfaces) {
     const std::vector<Vec4> directions = bounces(surfaces);
     constexpr std::size_t kTogether = 16;
     Measured m{{}, static_cast<double>(surfaces.size()), {}};
-    std::vector<RayScene::Ray> rays;
+    std::vector<Ray> rays;
     std::vector<Hit> hits(kTogether);
     volatile std::size_t sink = 0;
     m.time = time_of([&] {
@@ -343,7 +343,7 @@ void measure(int count, Intersector intersector, Rates& rates) {
     const RayScene rays(instant.placed, instant.tree, picture.settings);
     const Shadows shadows(instant.placed, instant.tree);
     const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
-        return rays.is_blocked(s.point, sun.toward, kMiss, s.body, stats);
+        return rays.is_blocked({s.point, sun.toward, s.body}, stats);
     });
     report.row("hard", hard);
     Measured both = {

@@ -12,7 +12,7 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "render/intersect.hpp"
+#include "render/scene/intersect.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -24,12 +24,8 @@ constexpr double kDistance = 8;  ///< of the rays' origins from the body's centr
 constexpr int kRepeats = 3;
 constexpr int kMostPlainSteps = 20'000;
 constexpr int kMaxSteps = 200;                ///< the scene format's default
-constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/intersect.cpp
+constexpr double kRendererTolerance = 1e-13;  ///< kOnSurface of render/scene/intersect.cpp
 constexpr std::array<int, 9> kSteps = {1, 2, 3, 4, 6, 8, 16, 64, 200};
-
-struct Ray {
-    Vec4 origin, direction;
-};
 
 /// A body about the origin and rays toward it, of which some miss.
 struct Target {
@@ -65,16 +61,15 @@ struct Target {
             const double reach = is_bounded(shape) ? 1.2 * placed.bodies[0].radius : 2;
             const Vec4 aim = reach * std::pow(unit(random), 0.25) * direction();
             rays.push_back({origin, (aim - origin).normalized()});
-            exact.push_back(
-                hit_distance(placed, 0, origin, rays.back().direction, kMiss, settings, stats));
+            exact.push_back(hit_distance(placed, 0, rays.back(), settings, stats));
         }
         settings.intersector = Intersector::kTrace;
     }
     Target(const Target&) = delete;
 };
 
-/// The loop of render/intersect.cpp with its tolerance as an argument; `is_plain` steps by the
-/// distance alone, as sphere tracing is usually written.
+/// The loop of render/scene/intersect.cpp with its tolerance as an argument; `is_plain` steps by
+/// the distance alone, as sphere tracing is usually written.
 template <class S>
 double traced(const S& shape, const Ray& ray, double radius, double tolerance, bool is_plain,
               FrameStats& stats) {
@@ -140,13 +135,12 @@ bool measure(const Shape& shape) {
     for (const int steps : kSteps) {
         target.settings.max_steps = steps;
         renderers = row(target, "max_steps", name, steps, [&](const Ray& r, FrameStats& stats) {
-            return hit_distance(target.placed, 0, r.origin, r.direction, kMiss, target.settings,
-                                stats);
+            return hit_distance(target.placed, 0, r, target.settings, stats);
         });
     }
     target.settings.intersector = Intersector::kAnalytic;
     row(target, "closed form", name, 0, [&](const Ray& r, FrameStats& stats) {
-        return hit_distance(target.placed, 0, r.origin, r.direction, kMiss, target.settings, stats);
+        return hit_distance(target.placed, 0, r, target.settings, stats);
     });
     bool is_same = true;
     std::visit(

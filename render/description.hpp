@@ -85,7 +85,8 @@ struct CameraDescription {
     friend bool operator==(const CameraDescription&, const CameraDescription&) = default;
 };
 
-/// kDirect: Lambert and soft shadows in closed form. kPath: global illumination by path tracing.
+/// Which integrator makes the light: DirectIntegrator, Lambert and soft shadows in closed form; or
+/// PathIntegrator, global illumination. (tesserae::Integrator, in core, turns bodies.)
 enum class Integrator { kDirect, kPath };
 enum class Intersector { kTrace, kAnalytic };
 
@@ -111,7 +112,7 @@ struct Settings {
     int samples = 16;
     Integrator integrator = Integrator::kDirect;
     int bounces = 4;            ///< 0: emitted and direct light only
-    double clamp_indirect = 0;  ///< of a sample, see LightTransport::add; 0: no bound [radiance]
+    double clamp_indirect = 0;  ///< of a sample, see PathIntegrator; 0: no bound [radiance]
     Intersector intersector = Intersector::kTrace;
     int max_steps = 200;
     double max_distance = 200;  ///< along a view ray [m]

@@ -10,8 +10,8 @@
 #include "core/error.hpp"
 #include "render/file/exr_writer.hpp"
 #include "render/file/preview.hpp"
-#include "render/tile_image.hpp"
-#include "render/tiles.hpp"
+#include "render/tile/tile_image.hpp"
+#include "render/tile/tiles.hpp"
 
 namespace tesserae::render {
 namespace {

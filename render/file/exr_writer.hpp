@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "render/camera.hpp"
+#include "render/camera/camera.hpp"
 #include "render/picture.hpp"
-#include "render/tile_image.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::render {
 

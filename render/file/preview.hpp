@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "render/tile_image.hpp"
+#include "render/tile/tile_image.hpp"
 
 namespace tesserae::render {
 

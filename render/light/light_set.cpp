@@ -12,7 +12,20 @@ namespace {
 
 using std::numbers::pi;
 
+/// A sun smaller than this [rad] is hard: nobody sees the difference, and the radiance of its disc,
+/// which grows with the cube, would leave the range of double.
+constexpr double kHard = 1e-9;
+
 }  // namespace
+
+SunDisc sun_disc(const Sun& sun) {
+    double angle = sun.angle * (pi / 180);
+    if (angle < kHard) angle = 0;
+    SunDisc disc = {
+        {-sun.direction, angle, {std::sin(angle), std::cos(angle)}}, sun.irradiance, Color::Zero()};
+    if (angle > 0) disc.radiance = sun.irradiance / cap_irradiance(angle, pi / 2);
+    return disc;
+}
 
 LightSet::LightSet(const Lights& lights, const Vec4& camera_origin) : sky(lights.sky) {
     for (const Sun& sun : lights.suns)
@@ -51,13 +64,12 @@ LightAt LightSet::at(const SphereLight& light, const Vec4& point, const Vec4& no
     return at;
 }
 
-LightSet::Seen LightSet::first_sphere(const Vec4& origin, const Vec4& direction,
-                                      double limit) const {
+LightSet::Seen LightSet::first_sphere(const Ray& ray) const {
     Seen seen;
     for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-        const double t =
-            ray_hit(Hypersphere{spheres[i].radius}, origin - spheres[i].position, direction);
-        if (t < limit && t < seen.distance) seen = {i, t};
+        const Vec4 origin = ray.origin - spheres[i].position;
+        const double t = ray_hit(Hypersphere{spheres[i].radius}, origin, ray.direction);
+        if (t < ray.limit && t < seen.distance) seen = {i, t};
     }
     return seen;
 }

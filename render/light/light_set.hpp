@@ -3,9 +3,25 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/shadow.hpp"
+#include "render/description.hpp"
+#include "render/scene/ray.hpp"
 
 namespace tesserae::render {
+
+/// What a point sees of a light: a disc of directions, and how far away it is.
+struct LightDisc {
+    Vec4 toward;           ///< unit
+    double angle;          ///< half-angle [rad], below pi/2; 0 casts hard shadows
+    Cone cone;             ///< of that half-angle
+    double limit = kMiss;  ///< what is farther than this is behind the light [m]
+};
+
+/// A sun made ready: `toward` is where it stands.
+struct SunDisc : LightDisc {
+    Color irradiance;  ///< on a facing surface
+    Color radiance;    ///< of the disc: irradiance/((4 pi/3) sin^3 angle); 0 for a hard sun
+};
+SunDisc sun_disc(const Sun& sun);
 
 /// A light's disc at a point and what it brings there when nothing shades it.
 struct LightAt {
@@ -36,8 +52,8 @@ struct LightSet {
         std::uint32_t sphere = kNone;
         double distance = kMiss;
     };
-    /// The nearest sphere light that a ray meets before `limit` [m].
-    Seen first_sphere(const Vec4& origin, const Vec4& direction, double limit) const;
+    /// The nearest sphere light that a ray meets before its limit.
+    Seen first_sphere(const Ray& ray) const;
 };
 
 }  // namespace tesserae::render

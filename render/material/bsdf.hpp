@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "render/light/cap.hpp"
-#include "render/surface.hpp"
+#include "render/material/surface.hpp"
 
 namespace tesserae::render {
 

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
-#include "render/copied_frame.hpp"
+#include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"

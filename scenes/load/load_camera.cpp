@@ -1,5 +1,5 @@
 #include "core/error.hpp"
-#include "render/camera.hpp"
+#include "render/camera/camera.hpp"
 #include "scenes/load/load_parts.hpp"
 #include "scenes/timeline.hpp"
 

@@ -5,7 +5,7 @@
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
-#include "render/frame_scene.hpp"
+#include "render/scene/frame_scene.hpp"
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/memory.hpp"
 #include "scenes/timeline.hpp"

@@ -1,10 +1,10 @@
 #include "scenes/plan/plan_picture.hpp"
 
 #include "core/error.hpp"
-#include "render/camera.hpp"
-#include "render/frame_scene.hpp"
+#include "render/camera/camera.hpp"
 #include "render/material/bsdf.hpp"
-#include "render/slice.hpp"
+#include "render/scene/frame_scene.hpp"
+#include "render/scene/slice.hpp"
 
 namespace tesserae::scenes {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/camera.hpp"
+#include "render/camera/camera.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {

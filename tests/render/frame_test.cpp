@@ -21,7 +21,7 @@
 #include <thread>
 
 #include "core/error.hpp"
-#include "render/camera.hpp"
+#include "render/camera/camera.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {

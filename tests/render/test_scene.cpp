@@ -81,6 +81,17 @@ CameraDescription random_camera(Random& random, double distance) {
     return camera;
 }
 
+Hit nearest_of_all(const PlacedBodies& placed, const Ray& ray, const Settings& settings,
+                   FrameStats& stats) {
+    Hit best;
+    for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
+        if (b == ray.on) continue;
+        const double t = hit_distance(placed, b, ray, settings, stats);
+        if (t < best.distance) best = {t, b};
+    }
+    return best;
+}
+
 Folder::Folder() {
     static std::atomic<int> number = 0;
     path_ = std::filesystem::temp_directory_path() /

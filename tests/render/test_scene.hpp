@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/picture.hpp"
+#include "render/scene/intersect.hpp"
 
 namespace tesserae::render {
 
@@ -48,6 +49,10 @@ TestScene cloud(std::uint64_t seed, int count, double spread, double least, doub
 
 /// A camera anywhere and any way round, `distance` from a point near the origin that it looks at.
 CameraDescription random_camera(Random& random, double distance);
+
+/// What every search for a hit promises, by trying one body after the other.
+Hit nearest_of_all(const PlacedBodies& placed, const Ray& ray, const Settings& settings,
+                   FrameStats& stats);
 
 /// A folder of the test's own, removed at the end.
 class Folder {

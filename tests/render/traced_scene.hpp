@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 
-#include "render/path.hpp"
+#include "render/integrator/integrator.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -20,7 +21,7 @@ struct TracedScene {
     LightSet lights;
     RoughReflections rough;
     Shading shading;
-    LightTransport transport;
+    std::unique_ptr<const LightIntegrator> integrator;
     mutable FrameStats stats;
 
     explicit TracedScene(const TestScene& s)
@@ -31,33 +32,21 @@ struct TracedScene {
           lights(scene.lights, Vec4::Zero()),
           rough(picture.materials),
           shading(picture, placed, tree, lights, rough),
-          transport(picture, placed, tree, lights, shading) {}
+          integrator(make_integrator(picture, placed, tree, lights, shading)) {}
     TracedScene(const TracedScene&) = delete;
 
-    /// The nearest body, tried one by one.
-    Hit nearest(const Vec4& origin, const Vec4& direction, std::uint32_t on) const {
-        Hit hit;
-        for (std::uint32_t b = 0; b < placed.bodies.size(); ++b) {
-            if (b == on) continue;
-            const double t =
-                hit_distance(placed, b, origin, direction, kMiss, scene.settings, stats);
-            if (t < hit.distance) hit = {t, b};
-        }
-        return hit;
-    }
-
-    std::optional<Surface> first(const Vec4& direction) const {
-        const Hit hit = nearest(Vec4::Zero(), direction, RayScene::kNoBody);
-        if (!hit) return std::nullopt;
-        return shading.surface(hit, Vec4::Zero(), direction);
+    /// The surface that a ray meets.
+    std::optional<Surface> first(const Ray& ray) const {
+        const Hit hit = nearest_of_all(placed, ray, scene.settings, stats);
+        return hit ? std::optional(shading.surface(hit, ray)) : std::nullopt;
     }
 
     Color radiance(const Vec4& direction, const Sampler& sampler) const {
-        const std::optional<Surface> met = first(direction);
-        const LightTransport::Start start = {met ? &*met : nullptr, Vec4::Zero(), direction,
-                                             sampler};
+        const Ray ray = {Vec4::Zero(), direction};
+        const std::optional<Surface> met = first(ray);
+        const ViewSample sample = {met ? &*met : nullptr, ray, sampler};
         Color color;
-        transport.radiance({&start, 1}, {&color, 1}, stats);
+        integrator->radiance({&sample, 1}, {&color, 1}, stats);
         return color;
     }
 };

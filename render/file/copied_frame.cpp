@@ -1,0 +1,36 @@
+#include "render/file/copied_frame.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/file/file_writer.hpp"
+#include "render/camera/camera.hpp"
+#include "render/file/exr_writer.hpp"
+
+namespace tesserae::render {
+namespace {
+
+void copy_bytes(const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::ifstream in(from, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << in.rdbuf();
+    if (!in) throw RunError(fmt::format("{}: cannot be read", from.string()));
+    write_file(to, bytes.view());
+}
+
+}  // namespace
+
+void copy_frame(const FrameFiles& from, const Picture& picture, const FrameInfo& info,
+                const FrameFiles& to) {
+    const Settings& settings = picture.settings;
+    const Crop window = settings.window();
+    const Camera camera(picture.camera, settings.width, settings.height);
+    ExrWriter image(to.exr, settings, window, info, picture.camera, camera);
+    image.copy_tiles(from.exr);
+    // The preview first: where the image exists, its preview does.
+    copy_bytes(from.preview, to.preview);
+    image.finish();
+}
+
+}  // namespace tesserae::render

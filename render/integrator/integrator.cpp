@@ -1,0 +1,144 @@
+#include "render/integrator/integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/light/cap.hpp"
+#include "render/material/dielectric.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// From this bounce on a path may end at random.
+constexpr int kRouletteFrom = 4;
+/// And it goes on at most this often, so that no path runs for ever between white surfaces.
+constexpr double kSurvival = 0.95;
+
+/// Whether a direction lies in a light's disc, by chords, which keep the digits of small angles.
+bool is_in_disc(const LightDisc& disc, const Vec4& direction) {
+    return (direction - disc.toward).norm() <= 2 * std::sin(0.5 * disc.angle);
+}
+
+}  // namespace
+
+std::unique_ptr<const LightIntegrator> make_integrator(const Picture& picture,
+                                                       const PlacedBodies& placed,
+                                                       const BodyTree& tree, const LightSet& lights,
+                                                       const Shading& shading) {
+    if (picture.settings.integrator == Integrator::kPath)
+        return std::make_unique<PathIntegrator>(picture, placed, tree, lights, shading);
+    return std::make_unique<DirectIntegrator>(picture, placed, tree, lights, shading);
+}
+
+LightIntegrator::LightIntegrator(const Picture& picture, const PlacedBodies& placed,
+                                 const BodyTree& tree, const LightSet& lights,
+                                 const Shading& shading)
+    : settings_(picture.settings), lights_(lights), shading_(shading), glass_(picture, placed) {
+    if (needs_rays(picture)) scene_.emplace(placed, tree, picture.settings);
+}
+
+bool LightIntegrator::needs_rays(const Picture& picture) {
+    if (picture.settings.integrator == Integrator::kPath) return true;
+    return std::any_of(picture.appearance.begin(), picture.appearance.end(),
+                       [&](const Appearance& a) {
+                           return a.visible && is_specular(picture.materials[a.material]);
+                       });
+}
+
+void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const {
+    wave.live.push_back(static_cast<std::uint32_t>(wave.paths.size()));
+    LightPath& path = wave.paths.emplace_back(LightPath{sample.ray, sample.sampler, index});
+    if (sample.first) path.surface = *sample.first;
+    path.ray.limit = sample.first ? sample.first->distance : kMiss;
+    path.light = lights_.first_sphere(path.ray).sphere;
+}
+
+void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
+    stats.bounce_rays += wave.live.size();
+    wave.rays.clear();
+    for (const std::uint32_t i : wave.live)
+        if (!wave.paths[i].is_in_glass()) wave.rays.push_back(wave.paths[i].ray);
+    wave.hits.resize(wave.rays.size());
+    if (!wave.rays.empty()) scene_->nearest(wave.rays, wave.hits, stats);
+
+    auto hit = wave.hits.begin();
+    for (const std::uint32_t i : wave.live) {
+        LightPath& path = wave.paths[i];
+        const GlassBodies::Event event = path.is_in_glass()
+                                             ? glass_.next(path.medium, path.ray, stats)
+                                             : GlassBodies::Event{*hit++};
+        path.surface.reset();
+        if (event.hit) path.surface = shading_.surface(event.hit, path.ray);
+        path.is_exit = event.is_exit;
+        path.ray.limit = event.hit.distance;
+        path.light = lights_.first_sphere(path.ray).sphere;
+    }
+}
+
+Color LightIntegrator::light_seen(const LightPath& path) const {
+    const auto weight = [&](double angle) {
+        if (!(path.density > 0 && angle > 0)) return 1.0;
+        return power_weight(path.density, 1 / cap_solid_angle(angle));
+    };
+    if (path.light != LightSet::kNone) {
+        const SphereLight& light = lights_.spheres[path.light];
+        const LightDisc disc = LightSet::at(light, path.ray.origin, path.ray.direction).disc;
+        return weight(disc.angle) * light.radiance;
+    }
+    Color light = lights_.sky;
+    if (path.is_view) return light;
+    for (const SunDisc& sun : lights_.suns)
+        if (sun.angle > 0 && is_in_disc(sun, path.ray.direction))
+            light += weight(sun.angle) * sun.radiance;
+    return light;
+}
+
+std::uint32_t LightIntegrator::first_group(int scattered) const {
+    const std::size_t groups = 1 + lights_.suns.size() + lights_.spheres.size();
+    return static_cast<std::uint32_t>(groups) * static_cast<std::uint32_t>(scattered);
+}
+
+void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) {
+    path.ray = {path.surface->point, direction, path.surface->body};
+    path.density = density;
+    path.is_view = false;
+}
+
+void LightIntegrator::scatter_specular(LightPath& path, double choice) const {
+    const Surface& s = *path.surface;
+    const Vec4 direction = path.ray.direction;
+    const Vec4 facing = path.is_exit ? Vec4(-s.normal) : s.normal;
+    Color weight = s.albedo;
+    leave(path, reflected(direction, facing), 0);
+    if (s.material->kind == MaterialKind::kGlass) {
+        const std::uint32_t beyond = path.is_exit ? glass_.medium_beyond(s.body, s.point) : s.body;
+        const double ratio = glass_.refractive_index(path.medium) / glass_.refractive_index(beyond);
+        const double cosine = std::clamp(-direction.dot(facing), 0.0, 1.0);
+        const auto across = refracted(direction, facing, ratio);
+        if (across && !(choice < fresnel(cosine, ratio))) {
+            path.ray.direction = *across;
+            path.medium = beyond;
+            weight = radiance_scale(ratio) * s.albedo;
+        }
+    }
+    path.throughput *= weight;
+}
+
+bool LightIntegrator::survives(LightPath& path, int scattered, double chance) const {
+    // Inside glass radiance is up to index^3 as high: what counts is what gets out.
+    const double index = glass_.refractive_index(path.medium);
+    const double most = path.throughput.maxCoeff() * index * index * index;
+    if (!(most > 0)) return false;
+    if (scattered < kRouletteFrom) return true;
+    const double survival = std::min(kSurvival, most);
+    if (chance >= survival) return false;
+    path.throughput /= survival;
+    return true;
+}
+
+double LightIntegrator::power_weight(double p, double q) {
+    const double ratio = q / p;
+    return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,151 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/integrator/shading.hpp"
+#include "render/light/light_set.hpp"
+#include "render/material/bsdf.hpp"
+#include "render/scene/glass_bodies.hpp"
+#include "render/scene/ray_scene.hpp"
+#include "render/tile/sampler.hpp"
+
+namespace tesserae::render {
+
+/// A sample's view ray and the rest that decides what comes along it.
+struct ViewSample {
+    const Surface* first;  ///< what the ray meets; null if nothing
+    Ray ray;
+    Sampler sampler;  ///< of the sample; its groups are used from 0 on
+};
+
+/// Light followed from the viewer back: the ray that it has come to, what that meets (a surface, a
+/// light, or neither: the sky), and what it has brought so far.
+struct LightPath {
+    Ray ray;
+    Sampler sampler;
+    std::uint32_t sample;                       ///< whose view ray it began with
+    std::uint32_t medium = GlassBodies::kNone;  ///< the glass that the ray is in
+    /// Of the choice of the ray's direction, where lights were chosen as well; else 0.
+    double density = 0;
+    bool is_view = true;
+
+    std::optional<Surface> surface{};
+    bool is_exit = false;  ///< the surface is met from inside, out of the medium
+    std::uint32_t light = LightSet::kNone;
+
+    Color sum = Color::Zero(), throughput = Color::Ones();
+    /// Scatterings since the first surface that is no mirror or glass, with that one's. What such a
+    /// surface gets from a light or from what glows is direct, what comes farther not.
+    int since_rough = 0;
+
+    bool is_in_glass() const { return medium != GlassBodies::kNone; }
+    bool meets_surface() const { return surface && light == LightSet::kNone; }
+};
+
+/// Paths that are followed side by side, since their rays are traced faster so. None changes what
+/// another one brings.
+struct PathWave {
+    std::vector<LightPath> paths;
+    std::vector<std::uint32_t> live;  ///< the paths that go on, ascending
+    std::vector<Ray> rays;            ///< of those outside glass; with their hits
+    std::vector<Hit> hits;
+};
+
+/// The radiance along view rays. A ray is followed from surface to surface: mirrors and glass send
+/// it on, up to `bounces` times; what comes from other surfaces is where DirectIntegrator and
+/// PathIntegrator differ. `bounces` = 0 is emitted and direct light: at most bounces + 1 surfaces
+/// scatter a path. Sphere lights are seen by every ray and end it, in front of what lies behind
+/// them; suns with an angle are seen by all but view rays.
+class LightIntegrator {
+  public:
+    /// All must outlive it.
+    /// @param tree   of the bodies; it is not asked unless needs_rays()
+    LightIntegrator(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+                    const LightSet& lights, const Shading& shading);
+    virtual ~LightIntegrator() = default;
+
+    /// @param colors   as many as samples
+    virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
+                          FrameStats& stats) const = 0;
+
+    /// Whether the picture's integrator traces any but view rays and those of Shading's shadows.
+    static bool needs_rays(const Picture& picture);
+
+  protected:
+    /// Adds the path of a view ray, arrived where that arrives.
+    void begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const;
+    /// Follows the rays of the live paths to what they meet.
+    void trace(PathWave& wave, FrameStats& stats) const;
+    /// Radiance of the light or the sky that a path's ray ends in, weighted against the choice of
+    /// lights.
+    Color light_seen(const LightPath& path) const;
+    /// The group of numbers for the scattering after so many. Those up to the next scattering's are
+    /// for the choice of lights, one for each sun and sphere light.
+    std::uint32_t first_group(int scattered) const;
+    /// Sends a path on from its surface.
+    static void leave(LightPath& path, const Vec4& direction, double density);
+    /// The same from a mirror or glass.
+    /// @param choice   uniform in [0, 1): between reflection and refraction
+    void scatter_specular(LightPath& path, double choice) const;
+    /// Whether a path goes on after its scattering: by Russian roulette once it is long.
+    /// @param chance   uniform in [0, 1)
+    bool survives(LightPath& path, int scattered, double chance) const;
+    /// The weight of a choice of density p against one of density q.
+    static double power_weight(double p, double q);
+
+    const Settings& settings_;
+    const LightSet& lights_;
+    const Shading& shading_;
+    GlassBodies glass_;
+    std::optional<RayScene> scene_;  ///< none where view rays are all that there is
+};
+
+/// Direct light without noise: the first surface that is no mirror or glass ends a path, with
+/// Shading's closed forms.
+class DirectIntegrator : public LightIntegrator {
+  public:
+    using LightIntegrator::LightIntegrator;
+    void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
+                  FrameStats& stats) const override;
+
+  private:
+    bool scatter(LightPath& path, int scattered, FrameStats& stats) const;
+};
+
+/// All light, with noise that falls with the number of samples. Every surface that is no mirror or
+/// glass adds what a random point of every light brings there, and sends the path on in a random
+/// direction of its own choice. Lights that both choices can find (sphere lights, suns with an
+/// angle) are counted with weights that add up to 1 (power heuristic; Veach 1997, section 9.2); the
+/// sky, emission and whatever is seen in mirrors and through glass is found by the ray alone, point
+/// lights and hard suns by the lights' choice alone. So the mean over samples is exact, but for the
+/// light of points and hard suns by way of mirrors and glass, which no ray finds.
+/// Its reference chooses no lights: path_reference() of tests/render/integrator/path_test.cpp.
+class PathIntegrator : public LightIntegrator {
+  public:
+    using LightIntegrator::LightIntegrator;
+    void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
+                  FrameStats& stats) const override;
+
+  private:
+    bool scatter(LightPath& path, int scattered, FrameStats& stats) const;
+    /// Adds light that comes to where a path has arrived; indirect light is clamped.
+    void add(LightPath& path, const Color& light, bool is_indirect) const;
+    Color light_of_points(const Surface& surface, const Bsdf& bsdf, FrameStats& stats) const;
+    /// @param group   of the sampler's numbers: the first of one for each light
+    Color light_of_spheres_and_suns(const Surface& surface, const Bsdf& bsdf,
+                                    const Sampler& sampler, std::uint32_t group,
+                                    FrameStats& stats) const;
+    bool is_lit(const Ray& toward_light, FrameStats& stats) const;
+};
+
+/// The one that the picture's settings name.
+std::unique_ptr<const LightIntegrator> make_integrator(const Picture& picture,
+                                                       const PlacedBodies& placed,
+                                                       const BodyTree& tree, const LightSet& lights,
+                                                       const Shading& shading);
+
+}  // namespace tesserae::render

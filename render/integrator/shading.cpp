@@ -1,0 +1,75 @@
+#include "render/integrator/shading.hpp"
+
+#include <cmath>
+
+namespace tesserae::render {
+namespace {
+
+/// Patterns are read this part of pattern_size below the surface. Without it a face that lies on a
+/// boundary of cells would take either cell's colour, as rounding has it.
+constexpr double kPatternDepth = 1e-4;
+
+bool is_odd(double cell) { return cell - 2 * std::floor(0.5 * cell) != 0; }
+
+/// Where patterns have their origin: the body's, or for an infinite plane its point nearest to the
+/// world's.
+Vec4 pattern_origin(const Shape& shape) {
+    if (const auto* plane = std::get_if<Hyperplane>(&shape)) return plane->offset * plane->normal;
+    return Vec4::Zero();
+}
+
+}  // namespace
+
+Color albedo_at(const Material& m, const Vec4& point) {
+    if (m.pattern == Pattern::kNone) return m.albedo;
+    const Vec4 cell = (point.array() / m.pattern_size + 0.5).floor().matrix();
+    const double sum = m.pattern == Pattern::kChecker ? cell.sum() : cell.x();
+    return is_odd(sum) ? m.pattern_albedo : m.albedo;
+}
+
+Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+                 const LightSet& lights, const RoughReflections& rough)
+    : picture_(picture), placed_(placed), lights_(lights), rough_(rough) {
+    if (!lights.is_empty()) shadows_.emplace(placed, tree);
+}
+
+Surface Shading::surface(const Hit& hit, const Ray& ray) const {
+    const PlacedBody& body = placed_.bodies[hit.body];
+    const Vec4 point = ray.at(hit.distance);
+    const Vec4 local = placed_.point_to_body(body, point);
+    const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
+    const std::uint32_t type = picture_.bodies.type[body.id];
+    const Material& material = picture_.materials[picture_.appearance[type].material];
+    Surface s = {hit.distance, hit.body,           point, placed_.direction_to_world(body, out), {},
+                 &material,    rough_.of(material)};
+    s.albedo = material.pattern == Pattern::kNone
+                   ? material.albedo
+                   : albedo_at(material, local - pattern_origin(*body.shape) -
+                                             kPatternDepth * material.pattern_size * out);
+    return s;
+}
+
+Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) const {
+    const Bsdf bsdf(s, out);
+    Color sum = s.material->emission + s.albedo * lights_.sky;
+    for (const SunDisc& sun : lights_.suns)
+        sum += reflected(s, bsdf, sun, s.normal.dot(sun.toward) * sun.irradiance, stats);
+    for (const PointLight& point : lights_.points) {
+        const LightAt light = LightSet::at(point, s.point, s.normal);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
+    }
+    for (const SphereLight& sphere : lights_.spheres) {
+        const LightAt light = LightSet::at(sphere, s.point, s.normal);
+        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
+    }
+    return sum;
+}
+
+Color Shading::reflected(const Surface& s, const Bsdf& bsdf, const LightDisc& light,
+                         const Color& irradiance, FrameStats& stats) const {
+    if (!(irradiance > 0).any()) return Color::Zero();
+    const double visible = shadows_->visibility(light, s.point, s.body, stats);
+    return visible * bsdf.value(light.toward) * irradiance;
+}
+
+}  // namespace tesserae::render

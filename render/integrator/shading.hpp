@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "render/light/light_set.hpp"
+#include "render/light/shadow.hpp"
+#include "render/material/bsdf.hpp"
+#include "render/material/rough.hpp"
+#include "render/material/surface.hpp"
+#include "render/scene/intersect.hpp"
+
+namespace tesserae::render {
+
+/// Colour of a material at a point of the body's frame. Checker: cells of edge pattern_size, one of
+/// them centred on the origin, coloured by the parity of their four indices. Stripes: slabs of
+/// width pattern_size across the body's x axis, one of them centred on the origin. Odd cells have
+/// the pattern's albedo.
+Color albedo_at(const Material& material, const Vec4& point);
+
+/// The thesis's picture: surfaces lit by suns, point and sphere lights, with shadows, and by an
+/// unoccluded sky.
+class Shading {
+  public:
+    /// @param tree     of the bodies; without lights that cast shadows nothing asks it
+    /// @param rough    of its materials; must outlive it, like the others
+    Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+            const LightSet& lights, const RoughReflections& rough);
+
+    /// Where a ray meets a body.
+    Surface surface(const Hit& hit, const Ray& ray) const;
+
+    /// Radiance that leaves the surface toward the viewer: its emission, plus the sum over the
+    /// lights of BRDF * irradiance * visibility, plus albedo times the sky's radiance. The BRDF of
+    /// a 4D Lambert surface is 3 albedo/(4 pi), as the integral of cos over the hemisphere of S^3
+    /// is 4 pi/3; a rough surface's is taken toward the light's middle, and its share of the sky as
+    /// Lambert's.
+    /// @param out   toward the viewer, unit, world axes
+    Color radiance(const Surface& surface, const Vec4& out, FrameStats& stats) const;
+
+  private:
+    /// One light's share of the radiance.
+    Color reflected(const Surface& surface, const Bsdf& bsdf, const LightDisc& light,
+                    const Color& irradiance, FrameStats& stats) const;
+
+    const Picture& picture_;
+    const PlacedBodies& placed_;
+    const LightSet& lights_;
+    const RoughReflections& rough_;
+    std::optional<Shadows> shadows_;  ///< none without lights that cast shadows
+};
+
+}  // namespace tesserae::render

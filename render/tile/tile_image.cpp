@@ -1,0 +1,244 @@
+#include "render/tile/tile_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/error.hpp"
+#include "render/integrator/integrator.hpp"
+#include "render/scene/film_list.hpp"
+#include "render/tile/pixel_estimate.hpp"
+#include "render/tile/sampler.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// Samples between two looks at a pixel's noise; and view rays that are traced together.
+constexpr int kBatch = 16;
+/// The group of a sample's numbers that the camera uses; scattering counts from 0.
+constexpr std::uint32_t kCameraGroup = 0xffffffffu;
+/// The largest finite half.
+constexpr double kHalfMax = 65504;
+
+Imath::half to_half(double v) {
+    return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
+}
+
+/// A view ray and what it meets.
+struct View {
+    const Instant* instant;
+    ViewRay in_slice;
+    Ray ray;  ///< the same, about the instant's camera
+    std::optional<Surface> surface;
+};
+
+/// What is averaged over a pixel's samples.
+struct Filtered {
+    PixelEstimate color;
+    Color albedo = Color::Zero();
+    double alpha = 0;
+    int count = 0;
+};
+
+/// The rays of one tile, window by window of the size of a film list.
+class TileRays {
+  public:
+    TileRays(const FrameScene& scene, const Tile& tile);
+
+    /// Makes ready for the pixels of a window.
+    void enter(const Crop& window) { list_.fill(scene_.slice(), tile_.candidates, window); }
+    Pixel pixel(int x, int y);
+    FrameStats stats;
+
+  private:
+    using Cell = SliceSheet::Cell;
+
+    int samples_wanted(const Filtered& sum) const;
+    View centre(const Cell& cell, int x, int y) const;
+    View sample(const Cell& cell, int x, int y, int index) const;
+    View view_of(const Instant& instant, const ViewRay& ray) const;
+    // Of views_:
+    void trace();
+    void add_radiance(Filtered& sum, const SampleNumber& first);
+    void find_radiance(const SampleNumber& first);
+
+    const FrameScene& scene_;
+    const Tile& tile_;
+    const Settings& settings_;
+    int least_, most_;  ///< samples of a pixel
+    bool wants_centre_, wants_samples_;
+    FilmList list_;
+    std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
+    std::vector<ViewRay> rays_;
+    std::vector<Hit> hits_;
+    std::vector<ViewSample> samples_;
+    std::vector<Color> colors_;
+};
+
+void store_view(const View& view, Pixel& pixel) {
+    if (!view.surface) return;
+    const Vec4 position = view.surface->point + view.instant->camera.origin();
+    for (int i = 0; i < 4; ++i) {
+        pixel.normal[i] = static_cast<float>(view.surface->normal[i]);
+        pixel.position[i] = static_cast<float>(position[i]);
+    }
+    pixel.depth = static_cast<float>(view.surface->distance);
+    pixel.id = view.instant->placed.bodies[view.surface->body].id + 1;
+}
+
+void store_filtered(const Filtered& sum, Pixel& pixel) {
+    if (sum.count == 0) return;
+    const Color variance = sum.color.variance();
+    for (int i = 0; i < 3; ++i) {
+        pixel.color[i] = to_half(sum.color.mean()[i]);
+        pixel.albedo[i] = to_half(sum.albedo[i] / sum.count);
+        pixel.variance[i] = static_cast<float>(variance[i]);
+    }
+    pixel.alpha = to_half(sum.alpha / sum.count);
+    pixel.samples = static_cast<std::uint32_t>(sum.count);
+}
+
+}  // namespace
+
+TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
+    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};
+    image.pixels.resize(static_cast<std::size_t>(image.width()) *
+                        static_cast<std::size_t>(tile.y1 - tile.y0));
+    TileRays rays(scene, tile);
+    constexpr int kSide = FilmList::kSide;
+    for (int y0 = tile.y0; y0 < tile.y1; y0 += kSide)
+        for (int x0 = tile.x0; x0 < tile.x1; x0 += kSide) {
+            const Crop window = {x0, y0, std::min(x0 + kSide, tile.x1),
+                                 std::min(y0 + kSide, tile.y1)};
+            rays.enter(window);
+            for (int y = window.y0; y < window.y1; ++y)
+                for (int x = window.x0; x < window.x1; ++x) {
+                    if (stop.load(std::memory_order_relaxed)) throw Stopped();
+                    image.pixels[image.index(x, y)] = rays.pixel(x, y);
+                }
+        }
+    image.stats = rays.stats;
+    return image;
+}
+
+namespace {
+
+Pixel TileRays::pixel(int x, int y) {
+    Pixel pixel = {};
+    pixel.depth = std::numeric_limits<float>::infinity();
+    const auto cell = scene_.sheet().cell_of(x, y);
+    if (!cell) return pixel;
+
+    Filtered sum;
+    if (wants_centre_) {
+        views_.assign(1, centre(*cell, x, y));
+        trace();
+        store_view(views_.front(), pixel);
+        if (most_ == 1) add_radiance(sum, {y, x, 0});
+    }
+    while (wants_samples_ && sum.count < samples_wanted(sum)) {
+        const int begin = sum.count, end = std::min(begin + kBatch, samples_wanted(sum));
+        views_.clear();
+        for (int i = begin; i < end; ++i) views_.push_back(sample(*cell, x, y, i));
+        trace();
+        add_radiance(sum, {y, x, static_cast<std::uint32_t>(begin)});
+    }
+    store_filtered(sum, pixel);
+    return pixel;
+}
+
+TileRays::TileRays(const FrameScene& scene, const Tile& tile)
+    : scene_(scene), tile_(tile), settings_(scene.picture().settings), least_(settings_.samples) {
+    const Channels& c = settings_.channels;
+    const bool is_adaptive = settings_.noise_target > 0 && scene.wants_color();
+    most_ = is_adaptive ? settings_.most_samples() : least_;
+    wants_centre_ = most_ == 1 || c.depth || c.normal || c.position || c.id;
+    wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance);
+}
+
+int TileRays::samples_wanted(const Filtered& sum) const {
+    if (sum.count < least_) return least_;
+    return sum.color.noise() > settings_.noise_target ? most_ : sum.count;
+}
+
+View TileRays::centre(const Cell& cell, int x, int y) const {
+    const Instant& opening = scene_.opening();
+    return view_of(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+}
+
+View TileRays::sample(const Cell& cell, int x, int y, int index) const {
+    const auto number = static_cast<std::uint32_t>(index);
+    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
+    if (scene_.is_pinhole())
+        return view_of(scene_.opening(), scene_.opening().rays.middle(cell, film));
+    const auto u = Sampler(x, y, number).group(kCameraGroup);
+    const Instant& instant = scene_.at(u[3]);
+    return view_of(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
+}
+
+View TileRays::view_of(const Instant& instant, const ViewRay& ray) const {
+    return {&instant, ray, instant.camera.to_world(ray, settings_.max_distance), {}};
+}
+
+void TileRays::trace() {
+    stats.view_rays += views_.size();
+    hits_.resize(views_.size());
+    if (scene_.is_pinhole()) {
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            hits_[i] = list_.nearest(views_[i].instant->placed, views_[i].in_slice.direction,
+                                     views_[i].ray, settings_, stats);
+    } else if (scene_.is_still()) {
+        rays_.clear();
+        for (const View& view : views_) rays_.push_back(view.in_slice);
+        scene_.opening().view->nearest(rays_, hits_, stats);
+    } else {
+        for (std::size_t i = 0; i < views_.size(); ++i)
+            views_[i].instant->view->nearest({&views_[i].in_slice, 1}, {&hits_[i], 1}, stats);
+    }
+    for (std::size_t i = 0; i < views_.size(); ++i)
+        if (hits_[i])
+            views_[i].surface = views_[i].instant->shading.surface(hits_[i], views_[i].ray);
+}
+
+void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
+    for (const View& view : views_) {
+        ++sum.count;
+        if (!view.surface) continue;
+        sum.alpha += 1;
+        sum.albedo += view.surface->albedo;
+    }
+    if (!scene_.wants_color()) return;
+    find_radiance(first);
+    SampleNumber sample = first;
+    for (const Color& color : colors_) {
+        if (color.isFinite().all()) {
+            sum.color.add(color);
+        } else {
+            sum.color.add(Color::Zero());
+            stats.count_invalid(sample, 1);
+        }
+        ++sample.sample;
+    }
+}
+
+void TileRays::find_radiance(const SampleNumber& first) {
+    samples_.clear();
+    for (std::uint32_t i = 0; i < views_.size(); ++i)
+        samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
+                            Sampler(first.x, first.y, first.sample + i)});
+    colors_.resize(views_.size());
+    // Those of one instant together.
+    for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {
+        const Instant& instant = *views_[begin].instant;
+        end = begin + 1;
+        while (end < views_.size() && views_[end].instant == &instant) ++end;
+        instant.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
+                                     std::span(colors_).subspan(begin, end - begin), stats);
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::render
