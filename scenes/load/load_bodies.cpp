@@ -17,20 +17,16 @@ constexpr std::size_t kMaxNameBytes = 256;
 /// Bodies' states, and for a [[body]] of its own also its name and canonical text.
 constexpr std::uint64_t kBytesPerBody = 250;
 constexpr std::uint64_t kBytesPerTable = 1000;
-constexpr std::size_t kShapes = std::variant_size_v<Shape>;
 
-template <std::size_t... I>
-constexpr std::array<std::string_view, kShapes> shape_names(std::index_sequence<I...>) {
-    return {std::variant_alternative_t<I, Shape>::kName...};
+/// One of every shape, in the order of Shape; and their names.
+const auto kShapes = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{Shape(std::variant_alternative_t<I, Shape>())...};
 }
-constexpr auto kShapeNames = shape_names(std::make_index_sequence<kShapes>());
-
-template <std::size_t... I>
-Shape shape_of_kind(std::size_t kind, std::index_sequence<I...>) {
-    Shape shape;
-    ((kind == I ? void(shape.emplace<I>()) : void()), ...);
-    return shape;
+(std::make_index_sequence<std::variant_size_v<Shape>>());
+const auto kShapeNames = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{std::string_view(std::variant_alternative_t<I, Shape>::kName)...};
 }
+(std::make_index_sequence<std::variant_size_v<Shape>>());
 
 const char* expected_of(Rule rule) {
     if (rule == Rule::kPositive) return "expected a size > 0";
@@ -50,14 +46,12 @@ void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
     std::size_t kind = 0;
     if (!reader.require(key, expected)) {
         // Any shape's keys may be there: a misspelt "shape" is what must be found.
-        for (std::size_t i = 0; i < kShapes; ++i) {
-            Shape any = shape_of_kind(i, std::make_index_sequence<kShapes>());
+        for (const Shape& any : kShapes)
             visit_parameters(any, [&](const char* size, auto&, Rule) { reader.has(size); });
-        }
         return;
     }
     reader.read(key, kind, kShapeNames);
-    shape = shape_of_kind(kind, std::make_index_sequence<kShapes>());
+    shape = kShapes[kind];
     visit_parameters(shape, [&](const char* size, auto& member, Rule rule) {
         // A plain number, such as a hyperplane's offset, is 0 where it is not given.
         if (rule != Rule::kFinite) reader.require(size, expected_of(rule));
@@ -80,12 +74,6 @@ void refuse_motion(TableReader& reader, BodyTable& body) {
                         fmt::format("a {} never moves and has no {}", name_of(body.shape), key));
     };
     placing_keys(body, refuse), mass_keys(body, refuse);
-}
-
-void read_lattice(TableReader& reader, std::uint64_t most_bodies, BodyTable& body) {
-    Lattice& lattice = body.lattice.emplace();
-    lattice_keys(lattice, ReadKeys{reader}, most_bodies);
-    for (const std::uint32_t n : lattice.count) body.count *= n;
 }
 
 void set_mass(TableReader& reader, BodyTable& body) {
@@ -129,7 +117,7 @@ class BodyLoader {
         else
             refuse_motion(reader, body);
         surface_keys(body, read, materials_);
-        if (is_lattice) read_lattice(reader, kMaxBodies - total_, body);
+        if (is_lattice) lattice_keys(body.lattice.emplace(), read, kMaxBodies - total_);
         if (is_lattice && !bounded)
             reader.fail("shape", fmt::format("a {} cannot be in a lattice", name_of(body.shape)));
         reader.finish();
@@ -139,6 +127,8 @@ class BodyLoader {
         body.type.shape = body.shape;
         std::visit([](auto& s) { complete(s); }, body.type.shape);
         if (bounded) set_mass(reader, body);
+        if (is_lattice)
+            for (const std::uint32_t n : body.lattice->count) body.count *= n;
         total_ += body.count;
         return body;
     }

@@ -34,22 +34,18 @@ void require_frame(TableReader& reader, const render::CameraDescription& c) {
                                 toml_text(c.up)));
 }
 
-CameraKey load_key(TableReader& reader, std::span<const CameraKey> before, EffectiveWriter& out) {
-    CameraKey key;
-    camera_key_keys(key, ReadKeys{reader}, before);
-    reader.finish();
-    if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view)
-        reader.fail_here("expected position, look_at, up, fourth or field_of_view");
-    out.table("[[camera.key]]");
-    camera_key_keys(key, WriteKeys{out}, before);
-    return key;
-}
-
 void load_keys(TableReader& camera, const Origin& origin, Scene& scene, EffectiveWriter& out) {
-    const auto tables = camera.tables("key");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        TableReader reader(*tables[i], origin, fmt::format("camera key {}", i));
-        scene.camera_keys.push_back(load_key(reader, scene.camera_keys, out));
+    for (const auto* table : camera.tables("key")) {
+        const std::vector<CameraKey>& before = scene.camera_keys;
+        TableReader reader(*table, origin, fmt::format("camera key {}", before.size()));
+        CameraKey key;
+        camera_key_keys(key, ReadKeys{reader}, before);
+        reader.finish();
+        if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view)
+            reader.fail_here("expected position, look_at, up, fourth or field_of_view");
+        out.table("[[camera.key]]");
+        camera_key_keys(key, WriteKeys{out}, before);
+        scene.camera_keys.push_back(key);
     }
 }
 

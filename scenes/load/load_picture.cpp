@@ -29,20 +29,6 @@ MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& s
 
 namespace {
 
-LightTable read_light(TableReader& reader) {
-    LightTable light;
-    const ReadKeys read{reader};
-    light_type_keys(light, read), light_color_keys(light, read), light_place_keys(light, read);
-    reader.finish();
-    return light;
-}
-
-void write_light(const LightTable& light, EffectiveWriter& out) {
-    const WriteKeys write{out};
-    out.table("[[light]]");
-    light_type_keys(light, write), light_place_keys(light, write), light_color_keys(light, write);
-}
-
 void add_light(const LightTable& light, render::Lights& lights) {
     const render::Color color = light.color * light.strength;
     switch (light.type) {
@@ -67,13 +53,18 @@ void load_lights(TableReader& root, const Origin& origin, Scene& scene, Effectiv
     std::vector<LightTable> lights;
     for (const auto* table : root.tables("light")) {
         TableReader reader(*table, origin, fmt::format("light {}", lights.size()));
-        lights.push_back(read_light(reader));
+        const ReadKeys read{reader};
+        LightTable& light = lights.emplace_back();
+        light_type_keys(light, read), light_color_keys(light, read), light_place_keys(light, read);
+        reader.finish();
     }
     // A scene without lights is lit by a sky of 1.
     if (lights.empty()) lights.emplace_back();
-    for (const LightTable& light : lights) {
-        write_light(light, out);
-        add_light(light, scene.lights);
+    const WriteKeys write{out};
+    for (const LightTable& l : lights) {
+        out.table("[[light]]");
+        light_type_keys(l, write), light_place_keys(l, write), light_color_keys(l, write);
+        add_light(l, scene.lights);
     }
 }
 
