@@ -41,15 +41,16 @@ void visit_parameters(auto& shape, const auto& visit) {
 }  // namespace
 
 void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
-    std::string expected = "expected one of";
-    for (std::string_view name : kShapeNames) expected += fmt::format(" \"{}\"", name);
-    std::size_t kind = 0;
-    if (!reader.require(key, expected)) {
+    if (!reader.has(key)) {
+        std::string expected = "expected one of";
+        for (std::string_view name : kShapeNames) expected += fmt::format(" \"{}\"", name);
+        reader.require(key, expected);
         // Any shape's keys may be there: a misspelt "shape" is what must be found.
         for (const Shape& any : kShapes)
             visit_parameters(any, [&](const char* size, auto&, Rule) { reader.has(size); });
         return;
     }
+    std::size_t kind = 0;
     reader.read(key, kind, kShapeNames);
     shape = kShapes[kind];
     visit_parameters(shape, [&](const char* size, auto& member, Rule rule) {

@@ -1,5 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
 #include "core/error.hpp"
 #include "scenes/camera_path.hpp"
 #include "scenes/load/rules.hpp"

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "scenes/load/effective.hpp"
@@ -13,7 +13,7 @@
 
 // Every table of a scene file has one list of its keys (picture_keys.hpp, body_keys.hpp): a
 // function that calls visit(key, value, rule) for each. ReadKeys fills the values from a table of
-// the file, WriteKeys makes its canonical text, so that no key is read and not written.
+// the file, WriteKeys makes its canonical text: no key can be read and not written.
 //
 // A rule says what a value must be: Rule or Interval for reals, none where the type says all, or
 // one of these, with functions of its own for how a key is read, written, or both:
@@ -21,6 +21,7 @@
 //   rule.write(EffectiveWriter&, key, value)     may write nothing
 namespace tesserae::scenes {
 
+/// Reads the keys of a list from a table.
 struct ReadKeys {
     TableReader& reader;
 
@@ -38,6 +39,7 @@ struct ReadKeys {
     }
 };
 
+/// Writes the keys of a list.
 struct WriteKeys {
     EffectiveWriter& out;
 
@@ -80,10 +82,11 @@ struct Flags {
     const char* if_none = nullptr;  ///< the error of an empty list, if it is one
 
     void read(TableReader& reader, const char* key, T& value) const {
+        if (!reader.has(key)) return;
         std::vector<std::string> given;
         std::vector<std::string_view> allowed;
         for (const auto& [name, member] : flags) allowed.push_back(name);
-        if (!reader.read(key, given, allowed)) return;
+        reader.read(key, given, allowed);
         if (given.empty() && if_none != nullptr) reader.fail(key, if_none);
         for (const auto& [name, member] : flags)
             value.*member = std::find(given.begin(), given.end(), name) != given.end();
