@@ -134,8 +134,8 @@ class BoxView {
         // A face that the start is on counts as just ahead of it or behind, so that no quotient is
         // 0/0.
         constexpr double kLeast = 1e-300;
-        near_ = larger(near_, -near_) < kLeast ? all_lanes(kLeast) : near_;
-        far_ = larger(far_, all_lanes(kLeast));
+        near_ = larger(near_, -near_) < kLeast ? all_four(kLeast) : near_;
+        far_ = larger(far_, all_four(kLeast));
         per_near_ = 1 / near_, per_far_ = 1 / far_;
 
         const double first = 1 / range.limit;
@@ -157,7 +157,7 @@ class BoxView {
         const Four falls = (-level - heading_) * per_far_, rises = (level - heading_) * per_near_;
         const Mask4 ahead = near_ > 0;
         return {std::max(first, largest_lane(larger(falls, ahead ? falls : rises))),
-                smallest_lane(ahead ? rises : all_lanes(kMiss))};
+                smallest_lane(ahead ? rises : all_four(kMiss))};
     }
 
     /// Half the square of f(t)/t outside the box, and its derivatives: a parabola between the zeros
@@ -185,8 +185,8 @@ class BoxView {
     Line largest_at(double s, double side) const {
         const Four rising = heading_ + s * near_, falling = -heading_ - s * far_;
         const double value = largest_lane(larger(rising, falling));
-        const Four near = rising == value ? side * near_ : all_lanes(kMiss);
-        const Four far = falling == value ? -side * far_ : all_lanes(kMiss);
+        const Four near = rising == value ? side * near_ : all_four(kMiss);
+        const Four far = falling == value ? -side * far_ : all_four(kMiss);
         return {s, value, side * smallest_lane(smaller(near, far))};
     }
     Rim rim_of_entering(const Interval& inside) const;

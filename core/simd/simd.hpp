@@ -22,13 +22,14 @@ constexpr std::size_t kLanes = 8;
 
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Unsigned4 = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
 using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
 /// What comparing Double4s gives.
 using Mask4 = long long __attribute__((vector_size(4 * sizeof(long long))));
 
 [[gnu::always_inline]] inline Float8 all_lanes(float x) { return Float8{x, x, x, x, x, x, x, x}; }
-[[gnu::always_inline]] inline Double4 all_lanes(double x) { return Double4{x, x, x, x}; }
+[[gnu::always_inline]] inline Double4 all_four(double x) { return Double4{x, x, x, x}; }
 
 /// The larger of both; b where they are equal or one is no number.
 template <class V>

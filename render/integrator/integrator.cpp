@@ -5,6 +5,7 @@
 
 #include "render/light/cap.hpp"
 #include "render/material/dielectric.hpp"
+#include "render/picture_needs.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -34,15 +35,7 @@ LightIntegrator::LightIntegrator(const Picture& picture, const PlacedBodies& pla
                                  const BodyTree& tree, const LightSet& lights,
                                  const Shading& shading)
     : settings_(picture.settings), lights_(lights), shading_(shading), glass_(picture, placed) {
-    if (needs_rays(picture)) scene_.emplace(placed, tree, picture.settings);
-}
-
-bool LightIntegrator::needs_rays(const Picture& picture) {
-    if (picture.settings.integrator == Integrator::kPath) return true;
-    return std::any_of(picture.appearance.begin(), picture.appearance.end(),
-                       [&](const Appearance& a) {
-                           return a.visible && is_specular(picture.materials[a.material]);
-                       });
+    if (needs_of(picture).bounce_rays) scene_.emplace(placed, tree, picture.settings);
 }
 
 void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const {

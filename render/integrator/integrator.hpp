@@ -63,7 +63,7 @@ struct PathWave {
 class LightIntegrator {
   public:
     /// All must outlive it.
-    /// @param tree   of the bodies; it is not asked unless needs_rays()
+    /// @param tree   of the bodies; it is not asked unless PictureNeeds has rays off the slice
     LightIntegrator(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
                     const LightSet& lights, const Shading& shading);
     virtual ~LightIntegrator() = default;
@@ -71,9 +71,6 @@ class LightIntegrator {
     /// @param colors   as many as samples
     virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                           FrameStats& stats) const = 0;
-
-    /// Whether the picture's integrator traces any but view rays and those of Shading's shadows.
-    static bool needs_rays(const Picture& picture);
 
   protected:
     /// Adds the path of a view ray, arrived where that arrives.

@@ -320,19 +320,17 @@ BodyTree::BodyTree(const PlacedBodies& placed) { BodyTreeBuilder(*this, placed).
 
 BodyTree::Line BodyTree::line_of(const Ray& ray) {
     // All four axes at once, and no branch: which side is first is a toss.
-    using Doubles = double __attribute__((vector_size(4 * sizeof(double))));
-    using Floats = float __attribute__((vector_size(4 * sizeof(float))));
-    Doubles o, d;
+    simd::Double4 o, d;
     std::memcpy(&o, ray.origin.data(), sizeof o);
     std::memcpy(&d, ray.direction.data(), sizeof d);
-    const Doubles least = {kLeast, kLeast, kLeast, kLeast};
-    const auto is_forward = d > -least;
-    const Doubles inverse = 1 / (is_forward ? (d > least ? d : least) : d);
+    const simd::Double4 least = simd::all_four(kLeast);
+    const simd::Mask4 is_forward = d > -least;
+    const simd::Double4 inverse = 1 / (is_forward ? (d > least ? d : least) : d);
     const double reach = ray.origin.lpNorm<1>(), slack = kWiden * reach;
-    const Doubles shift = -o * inverse, widening = slack * (is_forward ? inverse : -inverse);
+    const simd::Double4 shift = -o * inverse, widening = slack * (is_forward ? inverse : -inverse);
     Line line;
-    const auto write = [](const Doubles& v, std::array<float, 4>& to) {
-        const Floats floats = __builtin_convertvector(v, Floats);
+    const auto write = [](const simd::Double4& v, std::array<float, 4>& to) {
+        const auto floats = __builtin_convertvector(v, simd::Float4);
         std::memcpy(to.data(), &floats, sizeof floats);
     };
     write(o, line.origin);
@@ -340,9 +338,9 @@ BodyTree::Line BodyTree::line_of(const Ray& ray) {
     write(inverse, line.inverse);
     write(shift - widening, line.enter_shift);
     write(shift + widening, line.leave_shift);
-    using Sides = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
-    const decltype(is_forward) low = {Boxes::low(0), Boxes::low(1), Boxes::low(2), Boxes::low(3)};
-    const Sides sides = __builtin_convertvector(is_forward ? low : low + kLanes, Sides);
+    const simd::Mask4 low = {Boxes::low(0), Boxes::low(1), Boxes::low(2), Boxes::low(3)};
+    const simd::Mask4 high = {Boxes::high(0), Boxes::high(1), Boxes::high(2), Boxes::high(3)};
+    const auto sides = __builtin_convertvector(is_forward ? low : high, simd::Unsigned4);
     std::memcpy(line.enter_side.data(), &sides, sizeof sides);
     line.slack = static_cast<float>(kOriginSlack * reach);
     line.limit = rounded_up(ray.limit);

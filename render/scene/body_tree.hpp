@@ -9,13 +9,16 @@
 #include <utility>
 #include <vector>
 
-#include "render/scene/lanes.hpp"
+#include "core/simd/simd.hpp"
 #include "render/scene/placed_bodies.hpp"
 #include "render/scene/ray.hpp"
 
 namespace tesserae::render {
 
 class RayStream;
+
+using simd::kLanes, simd::Float8, simd::all_lanes, simd::larger, simd::smaller, simd::magnitude;
+using simd::not_above, simd::product_sum, simd::square_root, simd::store_set;
 
 /// A hierarchy of 4D boxes over all bounded bodies, eight children to a node, tested at once by
 /// wide arithmetic: for rays that leave the camera's hyperplane, so over whole bodies, not their
@@ -60,15 +63,19 @@ class BodyTree {
     /// 0: the walks find it so without arithmetic.
     struct Boxes {
         /// The low sides along the first axis, the high sides, the low sides along the next one...
-        alignas(Lanes) std::array<float, 8 * kLanes> sides;
+        alignas(Float8) std::array<float, 8 * kLanes> sides;
 
         static std::uint32_t low(std::size_t axis) {
             return static_cast<std::uint32_t>(2 * axis * kLanes);
         }
-        static std::uint32_t high(std::size_t axis) { return low(axis) + kLanes; }
-        static std::uint32_t opposite(std::uint32_t side) { return side ^ kLanes; }
-        Lanes at(std::uint32_t side) const {
-            Lanes coordinates;
+        static std::uint32_t high(std::size_t axis) {
+            return static_cast<std::uint32_t>((2 * axis + 1) * kLanes);
+        }
+        static std::uint32_t opposite(std::uint32_t side) {
+            return side ^ static_cast<std::uint32_t>(kLanes);
+        }
+        Float8 at(std::uint32_t side) const {
+            Float8 coordinates;
             std::memcpy(&coordinates, &sides[side], sizeof coordinates);
             return coordinates;
         }
@@ -81,8 +88,8 @@ class BodyTree {
     };
     /// Where a lane is not used the radius is no number, and nothing meets it.
     struct Leaf {
-        std::array<Lanes, 4> centre;
-        Lanes radius;
+        std::array<Float8, 4> centre;
+        Float8 radius;
         std::array<std::uint32_t, kLanes> body;
     };
 
@@ -111,8 +118,8 @@ class BodyTree {
     };
     static Flare flare_of(const Ray& axis, const Cone& cone);
     /// Which boxes the ray, or cone, meets within its limit, and where it enters them.
-    static std::uint32_t boxes_met(const Boxes& boxes, const Line& line, Lanes& enter);
-    static std::uint32_t boxes_met(const Boxes& boxes, const Flare& cone, Lanes& enter);
+    static std::uint32_t boxes_met(const Boxes& boxes, const Line& line, Float8& enter);
+    static std::uint32_t boxes_met(const Boxes& boxes, const Flare& cone, Float8& enter);
     /// Which spheres the ray meets within its limit.
     static std::uint32_t balls_on_ray(const Leaf& leaf, const Line& line);
     /// Which spheres the cone may meet.
@@ -140,13 +147,13 @@ class BodyTree {
     std::vector<std::uint32_t> unbounded_;
 };
 
-inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, Lanes& enter) {
-    Lanes first = all_lanes(0), last = all_lanes(line.limit);
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, Float8& enter) {
+    Float8 first = all_lanes(0), last = all_lanes(line.limit);
     for (std::size_t axis = 0; axis < 4; ++axis) {
         const std::uint32_t near = line.enter_side[axis], far = Boxes::opposite(near);
-        const Lanes inverse = all_lanes(line.inverse[axis]);
-        const Lanes enter_shift = all_lanes(line.enter_shift[axis]);
-        const Lanes leave_shift = all_lanes(line.leave_shift[axis]);
+        const Float8 inverse = all_lanes(line.inverse[axis]);
+        const Float8 enter_shift = all_lanes(line.enter_shift[axis]);
+        const Float8 leave_shift = all_lanes(line.leave_shift[axis]);
         first = larger(product_sum(boxes.at(near), inverse, enter_shift), first);
         last = smaller(product_sum(boxes.at(far), inverse, leave_shift), last);
     }
@@ -155,8 +162,8 @@ inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Line& line, L
     return not_above(first, last * (1 + 1e-6f));
 }
 
-inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, Lanes& enter) {
-    Lanes first = all_lanes(0), last = all_lanes(cone.limit);
+inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, Float8& enter) {
+    Float8 first = all_lanes(0), last = all_lanes(cone.limit);
     const auto distance = [&](const Side& side) {
         return product_sum(boxes.at(side.side), all_lanes(side.inverse), all_lanes(side.shift));
     };
@@ -172,32 +179,32 @@ inline std::uint32_t BodyTree::boxes_met(const Boxes& boxes, const Flare& cone, 
 }
 
 inline std::uint32_t BodyTree::balls_on_ray(const Leaf& leaf, const Line& line) {
-    Lanes along = all_lanes(0), square = all_lanes(0);
+    Float8 along = all_lanes(0), square = all_lanes(0);
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        const Lanes v = leaf.centre[axis] - line.origin[axis];
+        const Float8 v = leaf.centre[axis] - line.origin[axis];
         along = product_sum(v, all_lanes(line.direction[axis]), along);
         square = product_sum(v, v, square);
     }
-    const Lanes radius = leaf.radius + line.slack;
-    const Lanes power = product_sum(radius, radius, square * kSquareSlack) - square;
+    const Float8 radius = leaf.radius + line.slack;
+    const Float8 power = product_sum(radius, radius, square * kSquareSlack) - square;
     // Missed where the chord's middle lies back, and the origin outside; or where the middle is
     // past the limit by more than half the chord: of that half, the square.
-    const Lanes past = larger(along - line.limit, all_lanes(0));
-    const Lanes half = product_sum(along, along, power);
+    const Float8 past = larger(along - line.limit, all_lanes(0));
+    const Float8 half = product_sum(along, along, power);
     return not_above(all_lanes(0), smaller(product_sum(-past, past, half), larger(along, power)));
 }
 
 inline std::uint32_t BodyTree::balls_in_cone(const Leaf& leaf, const Flare& cone) {
-    Lanes along = all_lanes(0), square = all_lanes(0);
+    Float8 along = all_lanes(0), square = all_lanes(0);
     for (std::size_t axis = 0; axis < 4; ++axis) {
-        const Lanes v = leaf.centre[axis] - cone.origin[axis];
+        const Float8 v = leaf.centre[axis] - cone.origin[axis];
         along = product_sum(v, all_lanes(cone.direction[axis]), along);
         square = product_sum(v, v, square);
     }
     // The centre lies off cos - along sin from the cone's side, and before the apex if it is met.
-    const Lanes radius = leaf.radius + cone.slack;
-    const Lanes reach = larger(product_sum(along, all_lanes(cone.sine), radius), all_lanes(0));
-    const Lanes off = (square - along * along) * (cone.cosine * cone.cosine);
+    const Float8 radius = leaf.radius + cone.slack;
+    const Float8 reach = larger(product_sum(along, all_lanes(cone.sine), radius), all_lanes(0));
+    const Float8 off = (square - along * along) * (cone.cosine * cone.cosine);
     return not_above(off, product_sum(reach, reach, square * kSquareSlack)) &
            not_above(all_lanes(0), along + radius);
 }
@@ -213,7 +220,7 @@ void BodyTree::for_each_body(const Way& way, Test&& test, Visit&& visit) const {
     std::size_t count = 0;
     for (Waiting next = {0, 0};;) {
         const Node& node = nodes_[next.node];
-        Lanes enter;
+        Float8 enter;
         const std::uint32_t met = boxes_met(node.boxes, way, enter);
 
         // All leaves at once: most name no body, and tests that wait for nothing overlap.

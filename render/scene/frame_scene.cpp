@@ -37,9 +37,8 @@ double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
 }
 
 /// For rays that leave the slice, if there are any.
-BodyTree tree_of(const Picture& picture, const PlacedBodies& placed, const LightSet& lights) {
-    const bool is_asked = !lights.is_empty() || LightIntegrator::needs_rays(picture);
-    return BodyTree(is_asked ? placed : PlacedBodies{});
+BodyTree tree_of(const Picture& picture, const PlacedBodies& placed) {
+    return BodyTree(needs_of(picture).any_rays_off_slice() ? placed : PlacedBodies{});
 }
 
 int instant_count(const Picture& picture, const Camera& camera) {
@@ -68,13 +67,14 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       camera(description, sheet.cell_width(), sheet.cell_height()),
       placed(place_bodies(picture, bodies, camera.origin())),
       lights(picture.lights, camera.origin()),
-      tree(tree_of(picture, placed, lights)),
+      tree(tree_of(picture, placed)),
       shading(picture, placed, tree, lights, rough),
       integrator(make_integrator(picture, placed, tree, lights, shading)),
       rays(description, camera) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)
     : picture_(picture),
+      needs_(needs_of(picture)),
       sheet_(picture.camera, picture.settings.width, picture.settings.height),
       rough_(picture.materials),
       filter_(picture.settings.filter, picture.settings.filter_width),

@@ -6,6 +6,7 @@
 
 #include "render/camera/camera_rays.hpp"
 #include "render/integrator/integrator.hpp"
+#include "render/picture_needs.hpp"
 #include "render/scene/view_scene.hpp"
 #include "render/tile/filter.hpp"
 
@@ -42,6 +43,7 @@ class FrameScene {
     FrameScene(const FrameScene&) = delete;
 
     const Picture& picture() const { return picture_; }
+    const PictureNeeds& needs() const { return needs_; }
     const SliceSheet& sheet() const { return sheet_; }
     const PixelFilter& filter() const { return filter_; }
     bool wants_color() const { return wants_color_; }  ///< for the image or the preview
@@ -59,6 +61,7 @@ class FrameScene {
 
   private:
     const Picture& picture_;
+    PictureNeeds needs_;
     SliceSheet sheet_;
     RoughReflections rough_;
     PixelFilter filter_;

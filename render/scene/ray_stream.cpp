@@ -6,11 +6,9 @@
 namespace tesserae::render {
 namespace {
 
-using Numbers = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
-
 /// index * kMost + ray, for eight of them.
-Numbers packed(const std::array<std::uint32_t, kLanes>& indices, std::uint32_t ray) {
-    Numbers numbers;
+simd::Unsigned8 packed(const std::array<std::uint32_t, kLanes>& indices, std::uint32_t ray) {
+    simd::Unsigned8 numbers;
     std::memcpy(&numbers, indices.data(), sizeof numbers);
     return numbers * RayStream::kMost + ray;
 }
@@ -52,9 +50,9 @@ void RayStream::find_leaves() {
         for (std::uint32_t i = first; i < end; ++i) {
             const std::uint32_t number = waiting_[i] % kMost;
             const BodyTree::Node& node = tree_.nodes_[waiting_[i] / kMost];
-            Lanes enter;
+            Float8 enter;
             const std::uint32_t met = BodyTree::boxes_met(node.boxes, lines_[number], enter);
-            const Numbers children = packed(node.child, number);
+            const simd::Unsigned8 children = packed(node.child, number);
             const std::uint32_t nodes = met & ~node.leaves, leaves = met & node.leaves;
             store_set(&children, nodes, &waiting_[last]);
             last += bit_count(nodes);
@@ -75,7 +73,7 @@ std::size_t RayStream::test_leaves() {
         const std::uint32_t number = leaves_[i] % kMost;
         const BodyTree::Leaf& leaf = tree_.leaves_[leaves_[i] / kMost];
         const std::uint32_t met = BodyTree::balls_on_ray(leaf, lines_[number]);
-        const Numbers bodies = packed(leaf.body, number);
+        const simd::Unsigned8 bodies = packed(leaf.body, number);
         store_set(&bodies, met, &candidates_[count]);
         count += bit_count(met);
     }

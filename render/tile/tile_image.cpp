@@ -153,9 +153,8 @@ Pixel TileRays::pixel(int x, int y) {
 TileRays::TileRays(const FrameScene& scene, const Tile& tile)
     : scene_(scene), tile_(tile), settings_(scene.picture().settings), least_(settings_.samples) {
     const Channels& c = settings_.channels;
-    const bool is_adaptive = settings_.noise_target > 0 && scene.wants_color();
-    most_ = is_adaptive ? settings_.most_samples() : least_;
-    wants_centre_ = most_ == 1 || c.depth || c.normal || c.position || c.id;
+    most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples() : least_;
+    wants_centre_ = most_ == 1 || scene.needs().centre_rays;
     wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance);
 }
 

@@ -99,12 +99,24 @@ std::string floor_and_walls(double half_width) {
     return text;
 }
 
+// Where the camera of a generated scene stands, seen from the middle of its block's floor.
+/// Times the larger of the block's height and width, so that all of it is in the picture, and so
+/// much more [m], so that a single body does not fill it: the distance.
+constexpr double kDistance = 1.7, kMoreDistance = 4;
+/// Parts of the distance: beside the block, above it, before it.
+constexpr double kBeside = 0.35, kAbove = 0.25, kBefore = 0.9;
+/// Parts of the height: by which the camera stands still higher, and where it looks, a little below
+/// the middle, since heaps fall.
+constexpr double kEyeHeight = 0.6, kTargetHeight = 0.4;
+/// View rays end at so many distances, far behind the block.
+constexpr double kSight = 10;
+
 /// The tables that all have in common; the camera looks at a block of this height and width, in the
 /// slice at `fourth`.
 std::string stage(std::string_view name, std::string_view physics, double height, double width,
                   double fourth = 0) {
-    const double far = 1.7 * std::max(width, height) + 4;
-    const Vec4 position(0.35 * far, 0.6 * height + 0.25 * far, -0.9 * far, fourth);
+    const double far = kDistance * std::max(width, height) + kMoreDistance;
+    const Vec4 position(kBeside * far, kEyeHeight * height + kAbove * far, -kBefore * far, fourth);
     return fmt::format(R"([scene]
 name = "{}"
 
@@ -146,7 +158,7 @@ pattern_albedo = [0.93, 0.86, 0.75]
 pattern_size = 0.25
 )",
                        name, physics, toml_text(position),
-                       toml_text(Vec4(0, 0.4 * height, 0, fourth)), 10 * far);
+                       toml_text(Vec4(0, kTargetHeight * height, 0, fourth)), kSight * far);
 }
 
 std::string gas(std::uint64_t bodies) {

@@ -132,7 +132,6 @@ std::string toml_text(double value) {
     return std::string(buffer, result.ptr);
 }
 
-std::string toml_text(std::int64_t value) { return fmt::format("{}", value); }
 std::string toml_text(bool value) { return value ? "true" : "false"; }
 std::string toml_text(const char* value) { return toml_text(std::string_view(value)); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ std::string printable(std::string_view bytes, std::size_t limit = 80);
 
 /// Shortest decimal that reads back as the same double.
 std::string toml_text(double value);
-std::string toml_text(std::int64_t value);
+std::string toml_text(std::integral auto value) { return std::to_string(value); }
 std::string toml_text(bool value);
 std::string toml_text(std::string_view value);  ///< quoted, escaped
 std::string toml_text(const char* value);

@@ -6,37 +6,27 @@
 #include <unordered_set>
 
 #include "core/error.hpp"
+#include "scenes/load/body_keys.hpp"
 #include "scenes/load/hash.hpp"
-#include "scenes/load/lattice.hpp"
-#include "scenes/load/load_parts.hpp"
-#include "scenes/load/nearest_name.hpp"
 #include "scenes/process/memory.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
-constexpr std::uint64_t kMaxBodies = 10'000'000;
 constexpr std::size_t kMaxNameBytes = 256;
 /// Bodies' states, and for a [[body]] of its own also its name and canonical text.
 constexpr std::uint64_t kBytesPerBody = 250;
 constexpr std::uint64_t kBytesPerTable = 1000;
-/// Masses [kg] whose inertia and inverse inertia stay inside the range of double for all sizes.
-constexpr double kLeastMass = 1e-60, kLargestMass = 1e60;
 
-constexpr std::size_t kShapes = std::variant_size_v<Shape>;
-
-template <std::size_t... I>
-constexpr std::array<std::string_view, kShapes> shape_names(std::index_sequence<I...>) {
-    return {std::variant_alternative_t<I, Shape>::kName...};
+/// One of every shape, in the order of Shape; and their names.
+const auto kShapes = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{Shape(std::variant_alternative_t<I, Shape>())...};
 }
-constexpr auto kShapeNames = shape_names(std::make_index_sequence<kShapes>());
-
-template <std::size_t... I>
-Shape shape_of_kind(std::size_t kind, std::index_sequence<I...>) {
-    Shape shape;
-    ((kind == I ? void(shape.emplace<I>()) : void()), ...);
-    return shape;
+(std::make_index_sequence<std::variant_size_v<Shape>>());
+const auto kShapeNames = []<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{std::string_view(std::variant_alternative_t<I, Shape>::kName)...};
 }
+(std::make_index_sequence<std::variant_size_v<Shape>>());
 
 const char* expected_of(Rule rule) {
     if (rule == Rule::kPositive) return "expected a size > 0";
@@ -44,117 +34,47 @@ const char* expected_of(Rule rule) {
     return "expected a direction, four numbers";
 }
 
-/// A [[body]] or [[lattice]] table, checked.
-struct BodyTable {
-    std::string name;
-    BodyType type;
-    Shape shape_as_written;  ///< before complete()
-    render::Appearance appearance;
-    std::string material;
-    Vec4 position = Vec4::Zero(), velocity = Vec4::Zero();
-    Bivector rotation, angular_velocity;  ///< [degrees], [rad/s]
-    double density = 1000;                ///< [kg/m^4]
-    bool has_mass = false;
-    std::optional<Lattice> lattice;
-    std::uint64_t count = 1;
-};
+void visit_parameters(auto& shape, const auto& visit) {
+    std::visit([&](auto& s) { s.parameters(s, visit); }, shape);
+}
 
-void read_shape(TableReader& reader, Shape& shape) {
-    std::string expected = "expected one of";
-    for (std::string_view name : kShapeNames) expected += fmt::format(" \"{}\"", name);
-    std::size_t kind = 0;
-    if (!reader.require("shape", expected)) {
+}  // namespace
+
+void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
+    if (!reader.has(key)) {
+        std::string expected = "expected one of";
+        for (std::string_view name : kShapeNames) expected += fmt::format(" \"{}\"", name);
+        reader.require(key, expected);
         // Any shape's keys may be there: a misspelt "shape" is what must be found.
-        for (std::size_t i = 0; i < kShapes; ++i)
-            std::visit(
-                [&](auto s) {
-                    s.parameters(s, [&](const char* key, auto&, Rule) { reader.has(key); });
-                },
-                shape_of_kind(i, std::make_index_sequence<kShapes>()));
+        for (const Shape& any : kShapes)
+            visit_parameters(any, [&](const char* size, auto&, Rule) { reader.has(size); });
         return;
     }
-    reader.read("shape", kind, kShapeNames);
-    shape = shape_of_kind(kind, std::make_index_sequence<kShapes>());
-    std::visit(
-        [&](auto& s) {
-            s.parameters(s, [&](const char* key, auto& member, Rule rule) {
-                // A plain number, such as a hyperplane's offset, is 0 where it is not given.
-                if (rule != Rule::kFinite) reader.require(key, expected_of(rule));
-                reader.read(key, member, rule);
-            });
-        },
-        shape);
+    std::size_t kind = 0;
+    reader.read(key, kind, kShapeNames);
+    shape = kShapes[kind];
+    visit_parameters(shape, [&](const char* size, auto& member, Rule rule) {
+        // A plain number, such as a hyperplane's offset, is 0 where it is not given.
+        if (rule != Rule::kFinite) reader.require(size, expected_of(rule));
+        reader.read(size, member, rule);
+    });
 }
 
-void read_motion(TableReader& reader, BodyTable& body) {
-    reader.read("position", body.position, Rule::kFinite);
-    reader.read("rotation", body.rotation);
-    reader.read("velocity", body.velocity, Rule::kFinite);
-    reader.read("angular_velocity", body.angular_velocity);
-    body.has_mass = reader.read("mass", body.type.mass, Interval{kLeastMass, kLargestMass});
-    if (reader.read("density", body.density, Rule::kPositive) && body.has_mass)
-        reader.fail("density", "there is a mass too; expected only one of them");
+void AnyShape::write(EffectiveWriter& out, const char* key, const Shape& shape) const {
+    out.key(key, name_of(shape));
+    visit_parameters(shape, WriteKeys{out});
 }
+
+namespace {
 
 /// A body without bounds never moves.
-void refuse_motion(TableReader& reader, const Shape& shape) {
-    for (const char* key :
-         {"position", "rotation", "velocity", "angular_velocity", "mass", "density"})
+void refuse_motion(TableReader& reader, BodyTable& body) {
+    const auto refuse = [&](const char* key, const auto&...) {
         if (reader.has(key))
-            reader.fail(key, fmt::format("a {} never moves and has no {}", name_of(shape), key));
-}
-
-void read_surface(TableReader& reader, const MaterialNumbers& materials, BodyTable& body) {
-    reader.read("friction", body.type.friction, Rule::kNonNegative);
-    reader.read("restitution", body.type.restitution, Interval{0, 1});
-    constexpr std::string_view kFixed[] = {"position", "rotation"};
-    std::vector<std::string> fixed;
-    reader.read("fixed", fixed, kFixed);
-    for (const std::string& part : fixed)
-        (part == kFixed[0] ? body.type.fixed_position : body.type.fixed_rotation) = true;
-    if (reader.read("material", body.material)) {
-        const auto found = materials.find(body.material);
-        if (found == materials.end()) {
-            std::vector<std::string_view> names;
-            for (const auto& [name, number] : materials) names.push_back(name);
-            std::sort(names.begin(), names.end());
-            reader.fail("material",
-                        "no material is called that" + did_you_mean(body.material, names));
-        }
-        body.appearance.material = found->second;
-    }
-    reader.read("visible", body.appearance.visible);
-}
-
-/// @param room   bodies that the scene may still have
-void read_lattice(TableReader& reader, std::uint64_t room, BodyTable& body) {
-    Lattice lattice;
-    std::array<std::int64_t, 4> count = {1, 1, 1, 1};
-    if (reader.require("count", "expected four integers >= 1"))
-        reader.read("count", count.data(), count.size(), 1,
-                    std::numeric_limits<std::int64_t>::max());
-    for (std::size_t axis = 0; axis < 4; ++axis) {
-        const auto n = static_cast<std::uint64_t>(count[axis]);
-        if (n > room / body.count)
-            reader.fail("count",
-                        fmt::format("too many bodies; a scene has at most {} in all", kMaxBodies));
-        body.count *= n;
-        lattice.count[axis] = static_cast<std::uint32_t>(n);
-    }
-    if (reader.require("spacing", "expected a distance or four, >= 0")) {
-        double same = 0;
-        if (reader.is_array("spacing")) {
-            reader.read("spacing", lattice.spacing, Rule::kNonNegative);
-        } else {
-            reader.read("spacing", same, Rule::kNonNegative);
-            lattice.spacing.setConstant(same);
-        }
-    }
-    reader.read("jitter", lattice.jitter, Rule::kNonNegative);
-    auto seed = static_cast<std::int64_t>(lattice.seed);
-    reader.read("seed", seed, 0, std::numeric_limits<std::int64_t>::max());
-    lattice.seed = static_cast<std::uint64_t>(seed);
-    body.lattice = lattice;
+            reader.fail(key,
+                        fmt::format("a {} never moves and has no {}", name_of(body.shape), key));
+    };
+    placing_keys(body, refuse), mass_keys(body, refuse);
 }
 
 void set_mass(TableReader& reader, BodyTable& body) {
@@ -163,54 +83,14 @@ void set_mass(TableReader& reader, BodyTable& body) {
     body.type.mass = body.density * content;
     if (body.type.mass >= kLeastMass && body.type.mass <= kLargestMass) return;
     std::string sizes;
-    std::visit(
-        [&](auto& s) {
-            s.parameters(s, [&](const char* key, const auto& value, Rule) {
-                sizes += fmt::format("{} = {}, ", key, toml_text(value));
-            });
-        },
-        body.shape_as_written);
+    visit_parameters(body.shape, [&](const char* key, const auto& value, Rule) {
+        sizes += fmt::format("{} = {}, ", key, toml_text(value));
+    });
     const std::string what =
         fmt::format("{}density = {} kg/m^4: the mass would be {} kg; expected {} to {}", sizes,
                     toml_text(body.density), toml_text(body.type.mass), toml_text(kLeastMass),
                     toml_text(kLargestMass));
     reader.fail("shape", what);
-}
-
-void write_type(BodyTable& body, EffectiveWriter& out) {
-    out.key("shape", name_of(body.type.shape));
-    std::visit(
-        [&](auto& s) {
-            s.parameters(s, [&](const char* key, const auto& value, Rule) { out.key(key, value); });
-        },
-        body.shape_as_written);
-    const bool bounded = is_bounded(body.type.shape);
-    if (bounded) out.key("mass", body.type.mass);
-    out.key("friction", body.type.friction);
-    out.key("restitution", body.type.restitution);
-    const bool position = body.type.fixed_position, rotation = body.type.fixed_rotation;
-    out.line("fixed", position ? (rotation ? R"(["position", "rotation"])" : R"(["position"])")
-                               : (rotation ? R"(["rotation"])" : "[]"));
-    // The default grey has no name.
-    if (body.appearance.material != 0) out.key("material", body.material);
-    out.key("visible", body.appearance.visible);
-}
-
-void write_placing(const BodyTable& body, EffectiveWriter& out) {
-    out.table(body.lattice ? "[[lattice]]" : "[[body]]");
-    out.key("name", body.name);
-    if (is_bounded(body.type.shape)) {
-        out.key("position", body.position);
-        out.key("rotation", body.rotation);
-        out.key("velocity", body.velocity);
-        out.key("angular_velocity", body.angular_velocity);
-    }
-    if (!body.lattice) return;
-    const auto& [count, spacing, jitter, seed] = *body.lattice;
-    out.line("count", fmt::format("[{}, {}, {}, {}]", count[0], count[1], count[2], count[3]));
-    out.key("spacing", spacing);
-    out.key("jitter", jitter);
-    out.key("seed", static_cast<std::int64_t>(seed));
 }
 
 /// Reads tables one after another into the scene's bodies.
@@ -228,23 +108,28 @@ class BodyLoader {
         const bool named = TableReader(table, origin, subject).read("name", body.name);
         if (named) subject += fmt::format(" {}", toml_text(std::string_view(printable(body.name))));
         TableReader reader(table, origin, subject);
+        const ReadKeys read{reader};
+        name_keys(body, read);
         check_name(reader, named, number, body.name);
-        read_shape(reader, body.type.shape);
-        const bool bounded = is_bounded(body.type.shape);
+        shape_keys(body, read);
+        const bool bounded = is_bounded(body.shape);
         if (bounded)
-            read_motion(reader, body);
+            placing_keys(body, read), mass_keys(body, read);
         else
-            refuse_motion(reader, body.type.shape);
-        read_surface(reader, materials_, body);
-        if (is_lattice) read_lattice(reader, kMaxBodies - total_, body);
+            refuse_motion(reader, body);
+        surface_keys(body, read, materials_);
+        if (is_lattice) lattice_keys(body.lattice.emplace(), read, kMaxBodies - total_);
         if (is_lattice && !bounded)
-            reader.fail("shape",
-                        fmt::format("a {} cannot be in a lattice", name_of(body.type.shape)));
+            reader.fail("shape", fmt::format("a {} cannot be in a lattice", name_of(body.shape)));
         reader.finish();
 
-        body.shape_as_written = body.type.shape;
+        // Material 0 is the grey of those that name none.
+        if (!body.material.empty()) body.appearance.material = materials_.at(body.material);
+        body.type.shape = body.shape;
         std::visit([](auto& s) { complete(s); }, body.type.shape);
         if (bounded) set_mass(reader, body);
+        if (is_lattice)
+            for (const std::uint32_t n : body.lattice->count) body.count *= n;
         total_ += body.count;
         return body;
     }
@@ -261,10 +146,18 @@ class BodyLoader {
         bodies.angular_velocity.reserve(total_);
     }
 
-    void append(BodyTable& body) {
-        write_placing(body, out_);
+    void append(const BodyTable& body) {
+        const WriteKeys write{out_};
+        const bool bounded = is_bounded(body.shape);
+        out_.table(body.lattice ? "[[lattice]]" : "[[body]]");
+        name_keys(body, write);
+        if (bounded) placing_keys(body, write);
+        if (body.lattice) lattice_keys(*body.lattice, write, kMaxBodies);
+        // What follows is the same for bodies of one type.
         const std::size_t start = out_.text().size();
-        write_type(body, out_);
+        shape_keys(body, write);
+        if (bounded) mass_keys(body, write);
+        surface_keys(body, write, materials_);
         const std::uint32_t type = type_number(body, std::string_view(out_.text()).substr(start));
 
         Bodies& bodies = scene_.bodies;
@@ -284,7 +177,6 @@ class BodyLoader {
 
   private:
     void check_name(TableReader& reader, bool named, std::size_t number, std::string& name) {
-        reader.has("name");
         if (!named) name = fmt::format("body-{}", number);
         if (name.empty() || name.size() > kMaxNameBytes)
             reader.fail("name", fmt::format("expected 1 to {} bytes", kMaxNameBytes));
@@ -340,8 +232,7 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
     BodyLoader loader(materials, scene, out);
     std::size_t number = 0;
     const auto load = [&](const toml::table* table, const Origin& place) {
-        BodyTable body = loader.read(*table, place, false, number++);
-        loader.append(body);
+        loader.append(loader.read(*table, place, false, number++));
     };
     for (const TextPiece& piece : text.bodies) {
         TomlDocument document(piece.text, {origin.place, piece.lines_before});
@@ -361,7 +252,7 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
         lattice_tables.push_back(loader.read(*lattices[i], origin, true, i));
     require_memory((loader.total() - number) * kBytesPerBody, loader.total(), origin);
     loader.reserve();
-    for (BodyTable& body : lattice_tables) loader.append(body);
+    for (const BodyTable& body : lattice_tables) loader.append(body);
 }
 
 }  // namespace tesserae::scenes

@@ -133,12 +133,13 @@ class Cutter {
         if (depth > kMaxDepth) fail(at_, fmt::format("nested deeper than {} levels", kMaxDepth));
     }
 
+    void count_body_value() {
+        if (++body_values_ > kMaxBodyValues)
+            fail(at_, fmt::format("a body with more than {} values", kMaxBodyValues));
+    }
+
     void count_value(char sign) {
-        if (in_bodies_) {
-            if (++body_values_ > kMaxBodyValues)
-                fail(at_, fmt::format("a body with more than {} values", kMaxBodyValues));
-            return;
-        }
+        if (in_bodies_) return count_body_value();
         if (sign == '=') ++rest_keys_;
         if (++rest_values_ > kMaxRestValues || rest_keys_ > kMaxRestKeys)
             fail(at_, fmt::format("more than {} keys or {} values outside [[body]] tables",
@@ -168,11 +169,7 @@ class Cutter {
             return;
         }
         const bool of_a_body = name.starts_with("[body.") || name.starts_with("[[body.");
-        if (in_bodies_ && of_a_body) {
-            if (++body_values_ > kMaxBodyValues)
-                fail(at_, fmt::format("a body with more than {} values", kMaxBodyValues));
-            return;
-        }
+        if (in_bodies_ && of_a_body) return count_body_value();
         if (in_bodies_) end_piece(line_start_);
         in_bodies_ = false;
         if (++rest_keys_ > kMaxRestKeys)

@@ -178,14 +178,15 @@ double TableReader::real_of(const toml::node& node, std::string_view key, Interv
     return value + 0.0;  // -0 becomes 0: the same scene, the same bits
 }
 
-std::int64_t TableReader::integer_of(const toml::node& node, std::string_view key, std::int64_t low,
-                                     std::int64_t high) const {
-    const std::string expected = high == std::numeric_limits<std::int64_t>::max()
-                                     ? fmt::format("expected an integer >= {}", low)
-                                     : fmt::format("expected an integer from {} to {}", low, high);
+std::int64_t TableReader::integer_of(const toml::node& node, std::string_view key,
+                                     IntegerRange range) const {
+    const std::string expected =
+        range.high == IntegerRange{}.high
+            ? fmt::format("expected an integer >= {}", range.low)
+            : fmt::format("expected an integer from {} to {}", range.low, range.high);
     const auto* integer = node.as_integer();
     if (integer == nullptr) fail_at(node, key, fmt::format("wrong type; {}", expected));
-    if (integer->get() < low || integer->get() > high) fail_at(node, key, expected);
+    if (integer->get() < range.low || integer->get() > range.high) fail_at(node, key, expected);
     return integer->get();
 }
 
@@ -275,28 +276,19 @@ bool TableReader::read(std::string_view key, std::string& value) {
     return node != nullptr;
 }
 
-bool TableReader::read(std::string_view key, std::int64_t& value, std::int64_t low,
-                       std::int64_t high) {
+bool TableReader::read(std::string_view key, std::int64_t& value, IntegerRange range) {
     const toml::node* node = find(key);
-    if (node != nullptr) value = integer_of(*node, key, low, high);
+    if (node != nullptr) value = integer_of(*node, key, range);
     return node != nullptr;
 }
 
-bool TableReader::read(std::string_view key, int& value, int low, int high) {
-    std::int64_t wide = value;
-    const bool found = read(key, wide, low, high);
-    value = static_cast<int>(wide);
-    return found;
-}
-
-bool TableReader::read(std::string_view key, std::int64_t* values, std::size_t count,
-                       std::int64_t low, std::int64_t high) {
+bool TableReader::read(std::string_view key, std::span<std::int64_t> values, IntegerRange range) {
     const toml::node* node = find(key);
     if (node == nullptr) return false;
-    const auto& array =
-        array_of(*node, key, count, fmt::format("expected an array of {} integers", count));
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = integer_of(*array.get(i), fmt::format("{}[{}]", key, i), low, high);
+    const auto& array = array_of(*node, key, values.size(),
+                                 fmt::format("expected an array of {} integers", values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = integer_of(*array.get(i), fmt::format("{}[{}]", key, i), range);
     return true;
 }
 

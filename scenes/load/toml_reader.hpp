@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -28,6 +29,10 @@ struct Interval {
     bool low_open = false, high_open = false;
 };
 Interval interval_of(Rule rule);
+/// The same of an integer.
+struct IntegerRange {
+    std::int64_t low = 0, high = std::numeric_limits<std::int64_t>::max();
+};
 
 /// Where a piece of TOML text stands: file or "--set KEY=VALUE".
 struct Origin {
@@ -73,11 +78,15 @@ class TableReader {
     bool read(std::string_view key, Bivector& value);
     bool read(std::string_view key, bool& value);
     bool read(std::string_view key, std::string& value);
-    bool read(std::string_view key, std::int64_t& value, std::int64_t low, std::int64_t high);
-    bool read(std::string_view key, int& value, int low, int high);
-    /// An array of exactly `count` integers.
-    bool read(std::string_view key, std::int64_t* values, std::size_t count, std::int64_t low,
-              std::int64_t high);
+    bool read(std::string_view key, std::int64_t& value, IntegerRange range);
+    bool read(std::string_view key, std::integral auto& value, IntegerRange range) {
+        auto wide = static_cast<std::int64_t>(value);
+        const bool is_given = read(key, wide, range);
+        value = static_cast<std::remove_reference_t<decltype(value)>>(wide);
+        return is_given;
+    }
+    /// An array of exactly so many integers.
+    bool read(std::string_view key, std::span<std::int64_t> values, IntegerRange range);
     bool read(std::string_view key, std::vector<std::string>& values,
               std::span<const std::string_view> allowed);
     /// One of the names; the value is its index.
@@ -102,8 +111,7 @@ class TableReader {
                               std::string_view what) const;
     double real_of(const toml::node& node, std::string_view key, Interval interval,
                    std::string_view expected) const;
-    std::int64_t integer_of(const toml::node& node, std::string_view key, std::int64_t low,
-                            std::int64_t high) const;
+    std::int64_t integer_of(const toml::node& node, std::string_view key, IntegerRange range) const;
     std::string text_of(const toml::node& node, std::string_view key) const;
     void require_known(std::string_view word, const toml::node& node, std::string_view key,
                        std::span<const std::string_view> names) const;

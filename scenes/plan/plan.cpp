@@ -5,6 +5,7 @@
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
+#include "render/picture_needs.hpp"
 #include "render/scene/frame_scene.hpp"
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/memory.hpp"
@@ -28,6 +29,10 @@ constexpr std::uint64_t kPictureBytes = 300;
 constexpr std::uint64_t kProgramBytes = 100'000'000;
 /// A pixel of a tile in flight, all channels, before and after compression.
 constexpr std::uint64_t kPixelBytes = 200;
+/// Tiles of a thread in memory: of large ones two are under way (tiles_in_flight,
+/// render/frame.cpp), each in the renderer's and the writer's form; of small ones more are, which
+/// weigh little.
+constexpr std::uint64_t kTilesOfThread = 4;
 
 bool any_motion(const Scene& scene) {
     if (!scene.physics || scene.physics->duration == 0) return false;
@@ -46,62 +51,65 @@ bool any_motion(const Scene& scene) {
 }
 
 /// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
-void decide_solver(const Scene& scene, const Needs& needs, bool fits_floats, Plan& plan) {
-    const PhysicsSettings& physics = *scene.physics;
-    if (plan.movable_bodies == 0) {
-        plan.decisions.push_back({"contacts", false, "no body can be moved by them"});
-        return;
-    }
-    plan.decisions.push_back(
-        {"friction", needs.friction,
-         needs.friction ? "contacts have tangent rows"
-                        : "friction = 0 of all that moves: contacts have no tangent rows"});
-    plan.decisions.push_back({"restitution", needs.restitution,
-                              needs.restitution ? "contacts may rebound"
-                                                : "restitution = 0 everywhere: nothing rebounds"});
-    plan.decisions.push_back(
-        {"islands in colours", fits_floats,
-         fits_floats ? fmt::format("islands of {} contacts or more, eight contacts at a time in "
-                                   "float; smaller ones one by one",
-                                   kColouredFrom)
-                     : "masses or sizes are too far apart for float: contacts one by one"});
-    plan.decisions.push_back(
-        {"sub-steps", physics.substeps > 1,
-         fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations)});
-    const bool soft = physics.solver == Solver::kSoft;
-    plan.decisions.push_back(
-        {"relaxation of soft contacts", soft,
-         soft ? "solver = \"soft\": velocity that only removes overlap is given back"
-              : "solver = \"impulse\""});
-    plan.decisions.push_back(
-        {"sleeping", physics.sleeping,
-         physics.sleeping ? "islands at rest are left out until touched" : "sleeping = false"});
+void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits_floats,
+                   Plan& plan) {
+    plan.decide("friction", needs.friction, "contacts have tangent rows",
+                "friction = 0 of all that moves: contacts have no tangent rows");
+    plan.decide("restitution", needs.restitution, "contacts may rebound",
+                "restitution = 0 everywhere: nothing rebounds");
+    plan.decide("islands in colours", fits_floats,
+                fmt::format("islands of {} contacts or more, eight contacts at a time in float; "
+                            "smaller ones one by one",
+                            kColouredFrom),
+                "masses or sizes are too far apart for float: contacts one by one");
+    const std::string substeps =
+        fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations);
+    plan.decide("sub-steps", physics.substeps > 1, substeps, substeps);
+    plan.decide("relaxation of soft contacts", physics.solver == Solver::kSoft,
+                "solver = \"soft\": velocity that only removes overlap is given back",
+                "solver = \"impulse\"");
+    plan.decide("sleeping", physics.sleeping, "islands at rest are left out until touched",
+                "sleeping = false");
 }
 
 void decide_physics(const Scene& scene, Plan& plan) {
-    if (!scene.physics)
-        plan.decisions.push_back({"physics", false, "the scene has no [physics] table: a still"});
-    else if (!plan.moves)
-        plan.decisions.push_back({"physics", false, "nothing can move: every frame shows time 0"});
-    else
-        plan.decisions.push_back({"physics", true,
-                                  fmt::format("{} of {} bodies can be moved by contacts",
-                                              plan.movable_bodies, plan.bodies)});
+    plan.decide(
+        "physics", plan.moves,
+        fmt::format("{} of {} bodies can be moved by contacts", plan.movable_bodies, plan.bodies),
+        scene.physics ? "nothing can move: every frame shows time 0"
+                      : "the scene has no [physics] table: a still");
     if (!plan.moves) return;
     const std::vector<TypeProperties> types = type_properties(scene.bodies);
     const Needs needs = needs_of(scene.bodies, types);
-    plan.decisions.push_back(
-        {"rotors and angular velocities", needs.turning,
-         needs.turning ? "bodies turn, or contacts can turn them"
-                       : "nothing turns at the start, and no contact turns a sphere without "
-                         "friction or what has a fixed rotation"});
-    const char* inertia = "there are bodies whose inertia depends on the direction";
-    if (!needs.turning)
-        inertia = "nothing turns";
-    else if (!needs.uneven_inertia)
-        inertia = "what turns are spheres and cubes: their inertia is one number";
-    plan.decisions.push_back({"gyroscopic term and 6x6 inertia", needs.uneven_inertia, inertia});
-    decide_solver(scene, needs, fit_floats(types), plan);
+    plan.decide("rotors and angular velocities", needs.turning,
+                "bodies turn, or contacts can turn them",
+                "nothing turns at the start, and no contact turns a sphere without friction or "
+                "what has a fixed rotation");
+    plan.decide("gyroscopic term and 6x6 inertia", needs.uneven_inertia,
+                "there are bodies whose inertia depends on the direction",
+                needs.turning ? "what turns are spheres and cubes: their inertia is one number"
+                              : "nothing turns");
+    if (plan.movable_bodies == 0)
+        plan.decide("contacts", false, "", "no body can be moved by them");
+    else
+        decide_solver(*scene.physics, needs, fit_floats(types), plan);
+}
+
+std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
+    const std::uint64_t spheres = count_if_type(scene.bodies, [&](std::uint32_t number) {
+        const BodyType& type = scene.bodies.types[number];
+        return is_movable(type) && std::holds_alternative<Hypersphere>(type.shape);
+    });
+    const auto tile = static_cast<std::uint64_t>(scene.render.tile) * scene.render.tile;
+    std::uint64_t bytes = kProgramBytes + scene.source.size() + scene.effective.size() +
+                          plan.bodies * (kStates * kStateBytes + kPictureBytes) +
+                          spheres * kSphereStepBytes +
+                          (plan.movable_bodies - spheres) * kStepBytes +
+                          kTilesOfThread * threads * tile * kPixelBytes;
+    if (scene.camera.shutter > 0)
+        bytes += kPictureBytes * plan.bodies *
+                 render::most_instants(plan.bodies, scene.render.most_samples());
+    return bytes;
 }
 
 }  // namespace
@@ -118,22 +126,9 @@ Plan make_plan(const Scene& scene, int threads) {
     const render::Settings& r = scene.render;
     const render::Crop crop = r.window();
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
-    // With several samples a pixel's centre has a ray of its own, for depth, normal and id.
-    const auto samples = static_cast<std::uint64_t>(r.most_samples());
-    const std::uint64_t rays = samples == 1 ? 1 : samples + 1;
-    plan.view_rays = pixels * rays * plan.frames;
-    const auto tile = static_cast<std::uint64_t>(r.tile) * r.tile;
-    const std::uint64_t movable_spheres = count_if_type(scene.bodies, [&](std::uint32_t type) {
-        return can_move(type) &&
-               std::holds_alternative<Hypersphere>(scene.bodies.types[type].shape);
-    });
-    plan.memory_bytes =
-        kProgramBytes + scene.source.size() + scene.effective.size() +
-        plan.bodies * (kStates * kStateBytes + kPictureBytes) + movable_spheres * kSphereStepBytes +
-        (plan.movable_bodies - movable_spheres) * kStepBytes + 4 * threads * tile * kPixelBytes;
-    if (scene.camera.shutter > 0)
-        plan.memory_bytes += kPictureBytes * plan.bodies *
-                             render::most_instants(plan.bodies, static_cast<int>(samples));
+    plan.view_rays = pixels * render::most_view_rays(r) * plan.frames;
+    plan.memory_bytes = memory_of(scene, plan, threads);
+    // A frame lies between two stored steps.
     if (plan.moves)
         plan.trajectory_bytes =
             plan.bodies * (2 * plan.frames * kStateBytes +

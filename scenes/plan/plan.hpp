@@ -15,16 +15,21 @@ struct Decision {
     std::string reason;
 };
 
-/// What a scene needs, what is left out and why, and what it will cost. Made once, from the scene
-/// alone; simulating and rendering ask it, so that what it prints is what happens.
+/// What a scene needs, what is left out and why, and what it will cost, from the scene alone. The
+/// step and the renderer decide what they need (core's and render's needs_of); the plan asks them
+/// and gives the reasons. Whether anything moves is decided here, and simulating asks.
 struct Plan {
     std::vector<Decision> decisions;
+    void decide(std::string part, bool needed, std::string if_needed, std::string if_not = {}) {
+        decisions.push_back({std::move(part), needed, std::move(needed ? if_needed : if_not)});
+    }
+
     bool moves = false;  ///< some body changes its pose: steps are taken
 
     std::uint64_t bodies = 0, movable_bodies = 0;
     std::uint64_t steps = 0;  ///< time steps of the whole scene
     int frames = 0;
-    std::uint64_t view_rays = 0;         ///< of all frames
+    std::uint64_t view_rays = 0;         ///< of all frames, at most
     std::uint64_t memory_bytes = 0;      ///< estimated peak, program and libraries included
     std::uint64_t trajectory_bytes = 0;  ///< before compression, steps of all frames
 };

@@ -1,0 +1,43 @@
+#include "render/picture_needs.hpp"
+
+#include <algorithm>
+
+#include "render/light/light_set.hpp"
+#include "render/material/bsdf.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// With one sample the only ray goes through the centre.
+bool has_centre_rays(const Settings& settings) {
+    const Channels& c = settings.channels;
+    return settings.most_samples() > 1 && (c.depth || c.normal || c.position || c.id);
+}
+
+}  // namespace
+
+PictureNeeds needs_of(const Picture& picture) {
+    const Settings& settings = picture.settings;
+    const CameraDescription& camera = picture.camera;
+    const auto any_visible = [&](bool specular) {
+        return std::any_of(picture.appearance.begin(), picture.appearance.end(), [&](auto& a) {
+            return a.visible && is_specular(picture.materials[a.material]) == specular;
+        });
+    };
+    PictureNeeds needs = {};
+    needs.shadow_rays = !LightSet(picture.lights, camera.position).is_empty() && any_visible(false);
+    needs.bounce_rays =
+        any_visible(true) || (settings.integrator == Integrator::kPath && any_visible(false));
+    needs.centre_rays = has_centre_rays(settings);
+    needs.more_samples = settings.noise_target > 0;
+    needs.lens = camera.aperture > 0;
+    needs.slices = camera.slices > 1;
+    needs.thick_slice = camera.slice_thickness > 0 && !needs.slices;
+    return needs;
+}
+
+int most_view_rays(const Settings& settings) {
+    return settings.most_samples() + (has_centre_rays(settings) ? 1 : 0);
+}
+
+}  // namespace tesserae::render

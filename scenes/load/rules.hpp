@@ -1,0 +1,116 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "scenes/load/effective.hpp"
+#include "scenes/load/toml_reader.hpp"
+
+// Every table of a scene file has one list of its keys (picture_keys.hpp, body_keys.hpp): a
+// function that calls visit(key, value, rule) for each. ReadKeys fills the values from a table of
+// the file, WriteKeys makes its canonical text: no key can be read and not written.
+//
+// A rule says what a value must be: Rule or Interval for reals, none where the type says all, or
+// one of these, with functions of its own for how a key is read, written, or both:
+//   rule.read(TableReader&, key, value&)         leaves the value where the key is absent
+//   rule.write(EffectiveWriter&, key, value)     may write nothing
+namespace tesserae::scenes {
+
+/// Reads the keys of a list from a table.
+struct ReadKeys {
+    TableReader& reader;
+
+    void operator()(const char* key, auto& value) const { reader.read(key, value); }
+    void operator()(const char* key, auto& value, const auto& rule) const {
+        if constexpr (requires { rule.read(reader, key, value); })
+            rule.read(reader, key, value);
+        else
+            reader.read(key, value, rule);
+    }
+    /// A key without a default.
+    template <class T>
+    void operator()(const char* key, std::optional<T>& value, const auto& rule) const {
+        if (reader.has(key)) (*this)(key, value.emplace(), rule);
+    }
+};
+
+/// Writes the keys of a list.
+struct WriteKeys {
+    EffectiveWriter& out;
+
+    void operator()(const char* key, const auto& value) const { out.key(key, value); }
+    void operator()(const char* key, const auto& value, const auto& rule) const {
+        if constexpr (requires { rule.write(out, key, value); })
+            rule.write(out, key, value);
+        else
+            out.key(key, value);
+    }
+    template <class T>
+    void operator()(const char* key, const std::optional<T>& value, const auto& rule) const {
+        if (value) (*this)(key, *value, rule);
+    }
+};
+
+/// A value of an enumeration; the names are in its order.
+struct Names {
+    std::span<const std::string_view> names;
+
+    void read(TableReader& reader, const char* key, auto& value) const {
+        auto index = static_cast<std::size_t>(value);
+        reader.read(key, index, names);
+        value = static_cast<std::remove_reference_t<decltype(value)>>(index);
+    }
+    void write(EffectiveWriter& out, const char* key, auto value) const {
+        out.key(key, names[static_cast<std::size_t>(value)]);
+    }
+};
+
+template <class T>
+struct Flag {
+    std::string_view name;
+    bool T::*member;
+};
+/// The names of those flags that are set.
+template <class T>
+struct Flags {
+    std::span<const Flag<T>> flags;
+    const char* if_none = nullptr;  ///< the error of an empty list, if it is one
+
+    void read(TableReader& reader, const char* key, T& value) const {
+        if (!reader.has(key)) return;
+        std::vector<std::string> given;
+        std::vector<std::string_view> allowed;
+        for (const auto& [name, member] : flags) allowed.push_back(name);
+        reader.read(key, given, allowed);
+        if (given.empty() && if_none != nullptr) reader.fail(key, if_none);
+        for (const auto& [name, member] : flags)
+            value.*member = std::find(given.begin(), given.end(), name) != given.end();
+    }
+    void write(EffectiveWriter& out, const char* key, const T& value) const {
+        std::string text;
+        for (const auto& [name, member] : flags)
+            if (value.*member) text += (text.empty() ? "" : ", ") + toml_text(name);
+        out.line(key, "[" + text + "]");
+    }
+};
+
+/// A key that must be there.
+template <class R>
+struct Required {
+    const char* expected;
+    R rule;
+
+    void read(TableReader& reader, const char* key, auto& value) const {
+        if (reader.require(key, expected)) ReadKeys{reader}(key, value, rule);
+    }
+    void write(EffectiveWriter& out, const char* key, const auto& value) const {
+        WriteKeys{out}(key, value, rule);
+    }
+};
+
+}  // namespace tesserae::scenes

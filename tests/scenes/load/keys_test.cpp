@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "scenes/load/body_keys.hpp"
+#include "scenes/load/picture_keys.hpp"
+#include "tests/scenes/load/load_scene_text.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+constexpr const char* kScene = R"(
+[physics]
+[camera]
+slice_thickness = 0.5
+[[material]]
+name = "m"
+[[light]]
+type = "sky"
+[[light]]
+type = "sun"
+direction = [0, -1, 0, 0]
+[[light]]
+type = "point"
+position = [0, 5, 0, 0]
+[[light]]
+type = "sphere"
+position = [0, 5, 0, 0]
+radius = 1
+[[body]]
+name = "b"
+shape = "hypersphere"
+radius = 1
+[[lattice]]
+name = "l"
+shape = "hypersphere"
+radius = 1
+count = [2, 2, 1, 1]
+spacing = 3
+)";
+
+// other(value, rule): a value, in TOML, that the rule allows and that changes the scene.
+constexpr const char* kOtherVector = "[0.25, 1, 2, 3]";
+
+std::string other(double value, Interval interval) {
+    for (const double v : {0.25, 0.75, 1.5, 20.0})
+        if (v != value && v > interval.low && v < interval.high) return toml_text(v);
+    return "no value";
+}
+std::string other(double value, Rule rule) { return other(value, interval_of(rule)); }
+std::string other(double value, NextTime) { return other(value, Interval{}); }
+std::string other(const Vec4&, Rule) { return kOtherVector; }
+std::string other(const Vec4&, Turn) { return kOtherVector; }
+std::string other(const Vec4&, Spacing) { return kOtherVector; }
+std::string other(const render::Color&, Interval) { return "[0.25, 0.5, 1]"; }
+std::string other(const Bivector&) { return "{ xy = 30, zw = 0.5 }"; }
+std::string other(bool value) { return toml_text(!value); }
+std::string other(const std::string&) { return "\"other\""; }
+std::string other(const std::string&, NotEmpty) { return "\"other\""; }
+std::string other(const std::string&, FileName) { return "\"other\""; }
+std::string other(const std::string&, const MaterialName&) { return "\"m\""; }
+std::string other(std::integral auto value, IntegerRange) { return toml_text(value + 1); }
+std::string other(auto value, Names names) {
+    return toml_text(names.names[static_cast<std::size_t>(value) == 0 ? 1 : 0]);
+}
+template <class T>
+std::string other(const T&, const Flags<T>& flags) {
+    return "[" + toml_text(flags.flags.back().name) + "]";
+}
+std::string other(const render::Settings&, FrameSize) { return "[64, 48]"; }
+std::string other(const render::Crop&, CropOf) { return "[0, 0, 3, 2]"; }
+std::string other(const Shape&, AnyShape) { return "\"hypercapsule\""; }
+std::string other(const BodyTable&, MassOfBody) { return "3"; }
+std::string other(const BodyTable&, DensityOfBody) { return "3"; }
+std::string other(const std::array<std::uint32_t, 4>&, LatticeCount) { return "[1, 2, 3, 4]"; }
+template <class T>
+std::string other(const std::optional<T>& value, const auto& rule) {
+    return other(value.value_or(T{}), rule);
+}
+template <class R>
+std::string other(const auto& value, const Required<R>& required) {
+    return other(value, required.rule);
+}
+
+/// Where a key's line stands in the canonical text, if not under its own name.
+std::string written_as(const auto&...) { return ""; }
+std::string written_as(const BodyTable&, DensityOfBody) { return "mass"; }
+
+/// The line of a key in the table number `index` of those with a header.
+std::string line_of(const std::string& effective, const std::string& header, int index,
+                    const std::string& key) {
+    std::istringstream text(effective);
+    bool is_inside = false;
+    for (std::string line; std::getline(text, line);) {
+        if (line.starts_with('[')) is_inside = line == header && index-- == 0;
+        if (is_inside && line.starts_with(key + " = ")) return line;
+    }
+    return {};
+}
+
+/// A table of kScene.
+struct Table {
+    std::string header;  ///< in the canonical text
+    int index = 0;       ///< among those of its header
+    /// The override that sets a key of it.
+    std::function<std::string(const std::string& key, const std::string& value)> set;
+    std::map<std::string, std::string> also = {};  ///< what another key's new value asks for
+    std::set<std::string> lists_of_others = {};    ///< keys that are not in the table's own list
+};
+
+std::function<std::string(const std::string&, const std::string&)> set_in(const std::string& path) {
+    return [=](const std::string& key, const std::string& value) {
+        return fmt::format("{}.{}={}", path, key, value);
+    };
+}
+
+/// Every key of a list changes its line of the canonical text, and every key that the loader looks
+/// for is in the list.
+/// @param list   called with a visitor of the list's keys
+void expect_all_written(const Table& table, const auto& list) {
+    std::set<std::string> listed = table.lists_of_others;
+    const std::string base = load_text(kScene).effective;
+    list([&](const char* key, const auto& value, const auto&... rule) {
+        listed.insert(key);
+        std::vector<std::string> sets = {table.set(key, other(value, rule...))};
+        if (table.also.contains(key)) sets.push_back(table.also.at(key));
+        const std::string alias = written_as(value, rule...);
+        const std::string line = alias.empty() ? key : alias;
+        const std::string changed = load_text(kScene, sets).effective;
+        EXPECT_NE(line_of(changed, table.header, table.index, line), "") << key;
+        EXPECT_NE(line_of(changed, table.header, table.index, line),
+                  line_of(base, table.header, table.index, line))
+            << sets.front();
+    });
+
+    const std::string error = error_of(kScene, {table.set("zzz", "1")});
+    const auto at = error.find("known here:");
+    ASSERT_NE(at, std::string::npos) << error;
+    std::istringstream known(error.substr(at + 11));
+    for (std::string key; known >> key;)
+        EXPECT_TRUE(listed.contains(key)) << key << " of " << table.header << " is in no list";
+}
+
+TEST(Keys, OfTheFilmAreReadAndWritten) {
+    const Scene scene = load_text(kScene);
+    expect_all_written({"[scene]", 0, set_in("scene")},
+                       [&](const auto& visit) { scene_keys(scene, visit); });
+    expect_all_written({"[physics]", 0, set_in("physics")},
+                       [&](const auto& visit) { physics_keys(*scene.physics, visit); });
+    expect_all_written({"[camera]", 0, set_in("camera"), {}, {"key"}},
+                       [&](const auto& visit) { camera_keys(scene.camera, visit); });
+    expect_all_written({"[render]", 0, set_in("render")}, [&](const auto& visit) {
+        frame_keys(scene.render, visit), pixel_keys(scene.render, visit);
+        ray_keys(scene.render, visit), file_keys(scene.render, visit);
+    });
+    const CameraKey key;
+    const auto set_in_key = [](const std::string& name, const std::string& value) {
+        std::map<std::string, std::string> all = {{"time", "0"}, {"position", "[1, 1, -8, 0]"}};
+        all[name] = value;
+        std::string text;
+        for (const auto& [part, v] : all)
+            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", part, v);
+        return "camera.key=[{ " + text + " }]";
+    };
+    expect_all_written({"[[camera.key]]", 0, set_in_key},
+                       [&](const auto& visit) { camera_key_keys(key, visit, {}); });
+}
+
+TEST(Keys, OfMaterialsAndLightsAreReadAndWritten) {
+    const Scene scene = load_text(kScene);
+    expect_all_written({"[[material]]", 0, set_in("material.m")},
+                       [&](const auto& visit) { material_keys(scene.materials[1], visit); });
+    const LightType types[] = {LightType::kSky, LightType::kSun, LightType::kPoint,
+                               LightType::kSphere};
+    for (int i = 0; i < 4; ++i) {
+        const LightTable light = {types[i]};
+        const Table table = {"[[light]]", i, set_in(fmt::format("light.{}", i)), {}, {"type"}};
+        expect_all_written(table, [&](const auto& visit) {
+            light_color_keys(light, visit), light_place_keys(light, visit);
+        });
+    }
+    const LightTable light;
+    const Table sky = {"[[light]]",
+                       0,
+                       set_in("light.0"),
+                       {{"type", "light.0.direction=[0, 1, 0, 0]"}},
+                       {"color", "strength"}};
+    expect_all_written(sky, [&](const auto& visit) { light_type_keys(light, visit); });
+}
+
+TEST(Keys, OfBodiesAndLatticesAreReadAndWritten) {
+    const MaterialNumbers materials;
+    const BodyTable body;
+    const Lattice lattice;
+    for (const std::string path : {"body.b", "lattice.l"}) {
+        const bool is_lattice = path == "lattice.l";
+        const Table table = {is_lattice ? "[[lattice]]" : "[[body]]",
+                             0,
+                             set_in(path),
+                             {{"shape", path + ".height=1"}},
+                             {"radius"}};
+        expect_all_written(table, [&](const auto& visit) {
+            name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
+            mass_keys(body, visit), surface_keys(body, visit, materials);
+            if (is_lattice) lattice_keys(lattice, visit, kMaxBodies);
+        });
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::scenes

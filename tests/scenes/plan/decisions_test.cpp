@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/dynamics/world.hpp"
+#include "render/scene/frame_scene.hpp"
+#include "scenes/film/film.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/plan/plan.hpp"
+#include "tests/scenes/load/load_scene_text.hpp"
+
+// That what the plan says is what happens: counted in small frames and in worlds that step.
+namespace tesserae::scenes {
+namespace {
+
+/// Whether the plan needs a part; a failure if it does not tell.
+bool needs(const Scene& scene, const std::string& part) {
+    const Plan plan = make_plan(scene, 1);
+    const auto found = std::find_if(plan.decisions.begin(), plan.decisions.end(),
+                                    [&](const Decision& d) { return d.part == part; });
+    EXPECT_NE(found, plan.decisions.end()) << part;
+    return found != plan.decisions.end() && found->needed;
+}
+
+/// What was counted in a small frame 0 of a scene, and its preview's bytes.
+struct Frame {
+    Scene scene;
+    render::FrameStats stats;
+    std::string preview;
+
+    explicit Frame(const std::string& text, std::vector<std::string> sets = {}) {
+        sets.insert(sets.begin(), {"render.size=[16, 12]", "render.samples=2"});
+        const SceneFile file(text);
+        scene = load_scene(file.path(), sets);
+        const FilmReport report = film(scene, {0}, {}, file.folder() / "out", false, true);
+        stats = report.stats;
+        std::ifstream in(report.preview, std::ios::binary);
+        preview.assign(std::istreambuf_iterator<char>(in), {});
+    }
+};
+
+const std::string kMaterials = R"(
+[[material]]
+name = "mirror"
+kind = "mirror"
+[[material]]
+name = "glass"
+kind = "glass"
+)";
+
+std::string ball(double x, const std::string& lines = "") {
+    return fmt::format(
+        "[[body]]\nshape = \"hypersphere\"\nradius = 1\nposition = [{}, 0, 0, 0]\n{}\n", x, lines);
+}
+
+TEST(PlanOfAPicture, SaysWhichRaysAreTraced) {
+    const std::string lights[] = {
+        "", "[[light]]\ntype = \"sun\"\ndirection = [0.3, -1, 0.5, 0]\nstrength = 0\n",
+        "[[light]]\ntype = \"sun\"\ndirection = [0.3, -1, 0.5, 0]\n",
+        "[[light]]\ntype = \"point\"\nposition = [0, 5, -5, 0]\n",
+        "[[light]]\ntype = \"sphere\"\nposition = [0, 6, -6, 0]\nradius = 1\n"};
+    const std::string mirror = ball(2, "material = \"mirror\""),
+                      glass = ball(-2, "material = \"glass\""), hidden = ball(0, "visible = false");
+    const std::string bodies[] = {"",     hidden, ball(0),        ball(0) + ball(3),
+                                  mirror, glass,  mirror + glass, ball(0) + mirror + hidden};
+    for (const std::string& light : lights)
+        for (const std::string& body : bodies)
+            for (const bool is_path : {false, true}) {
+                SCOPED_TRACE(light + body + (is_path ? "path" : "direct"));
+                const Frame frame(
+                    kMaterials + light + body,
+                    {is_path ? "render.integrator=\"path\"" : "render.integrator=\"direct\""});
+                EXPECT_EQ(needs(frame.scene, "shadow rays"), frame.stats.shadow_rays > 0);
+                // Without a visible body there is nothing that light paths could leave.
+                EXPECT_EQ(needs(frame.scene, "global illumination"), is_path);
+                if (!is_path) {
+                    EXPECT_EQ(needs(frame.scene, "reflected and refracted rays"),
+                              frame.stats.bounce_rays > 0);
+                } else {
+                    EXPECT_EQ(frame.stats.bounce_rays > 0, !body.empty() && body != hidden);
+                }
+            }
+}
+
+TEST(PlanOfAPicture, CountsTheViewRays) {
+    for (const char* channels : {"[\"color\"]", "[\"color\", \"id\"]", "[\"albedo\", \"depth\"]"})
+        for (const char* samples : {"1", "2", "20"}) {
+            const Frame frame(ball(0), {std::string("render.channels=") + channels,
+                                        std::string("render.samples=") + samples});
+            EXPECT_EQ(make_plan(frame.scene, 1).view_rays, frame.stats.view_rays)
+                << channels << samples;
+        }
+    const Frame noisy(ball(0), {"render.noise_target=0.01", "render.max_samples=64"});
+    EXPECT_TRUE(needs(noisy.scene, "noise target"));
+    EXPECT_GT(noisy.stats.view_rays, 16u * 12 * 3);
+    EXPECT_LE(noisy.stats.view_rays, make_plan(noisy.scene, 1).view_rays);
+    EXPECT_FALSE(needs(Frame(ball(0), {"render.max_samples=64"}).scene, "noise target"));
+}
+
+TEST(PlanOfAPicture, SaysWhereViewRaysStart) {
+    const auto is_pinhole = [](const Scene& scene) {
+        const render::Picture picture = {scene.bodies, scene.appearance, scene.materials,
+                                         scene.camera, scene.lights,     scene.render};
+        return render::FrameScene(picture, true).is_pinhole();
+    };
+    for (const std::vector<std::string>& sets :
+         {std::vector<std::string>{},
+          {"camera.aperture=0.1"},
+          {"camera.slice_thickness=0.5"},
+          {"camera.slice_thickness=0.5", "camera.slices=4"}}) {
+        const Scene scene = load_text(ball(0), sets);
+        const bool is_sheet = scene.camera.slices > 1;
+        const bool several = is_sheet && needs(scene, "several slices");
+        const bool thick = !is_sheet && needs(scene, "thick slice");
+        EXPECT_EQ(is_pinhole(scene), !needs(scene, "lens") && !several && !thick);
+    }
+}
+
+TEST(PlanOfAPicture, SaysWhetherAnOpenShutterSeesMotion) {
+    const std::string still = ball(0, "material = \"glass\""),
+                      turning =
+                          "[physics]\n[[camera.key]]\ntime = 0\nposition = [0, 2, -8, 0]\n"
+                          "[[camera.key]]\ntime = 1\nposition = [9, 2, -3, 0]\n" +
+                          still;
+    for (const std::string& text : {still, turning}) {
+        const std::string body = kMaterials + text;
+        const Frame open(body,
+                         {"camera.shutter=1", "render.samples=16", "physics.gravity=[0,0,0,0]"});
+        const Frame shut(body, {"render.samples=16", "physics.gravity=[0,0,0,0]"});
+        EXPECT_FALSE(needs(shut.scene, "motion blur"));
+        EXPECT_EQ(needs(open.scene, "motion blur"), open.preview != shut.preview);
+    }
+}
+
+TEST(PlanOfMotion, SaysWhetherAnythingMoves) {
+    const std::string held = "fixed = [\"position\", \"rotation\"]\n";
+    const std::string weightless = "[physics]\ngravity = [0, 0, 0, 0]\n", falls = "[physics]\n";
+    const std::string wall = "[[body]]\nshape = \"hyperplane\"\nnormal = [0, 1, 0, 0]\n";
+    for (const std::string& text :
+         {weightless + ball(0), weightless + ball(0, "velocity = [0, 0, 0, 1]"),
+          weightless + ball(0, "angular_velocity = { xw = 1 }"), weightless + ball(0) + ball(1),
+          weightless + ball(0, held) + ball(5, held), falls + ball(0), falls + ball(0, held),
+          falls + ball(0, "fixed = [\"position\"]"), falls + wall,
+          falls + ball(0, held + "velocity = [1, 0, 0, 0]")}) {
+        const Scene scene = load_text(text);
+        World world(scene.bodies, *scene.physics);
+        for (int step = 0; step < 10; ++step) world.step(0.01);
+        bool moved = false;
+        for (BodyId id = 0; id < scene.bodies.size(); ++id)
+            moved |= world.bodies().position[id] != scene.bodies.position[id] ||
+                     !(world.bodies().rotor[id] == scene.bodies.rotor[id]);
+        EXPECT_EQ(make_plan(scene, 1).moves, moved) << text;
+    }
+}
+
+TEST(PlanOfMotion, SaysWhatAStepNeeds) {
+    const std::string wall =
+        "[[body]]\nshape = \"hyperplane\"\nnormal = [0, 1, 0, 0]\n"
+        "offset = -1\n";
+    const std::string box =
+        "[[body]]\nshape = \"hyperbox\"\nsize = [1, 2, 1, 1]\nposition = [5, 3, 0, 0]\n";
+    for (const std::string& bodies :
+         {ball(0), ball(0, "friction = 0"), ball(0, "restitution = 1"),
+          ball(0, "friction = 0\nangular_velocity = { xw = 1 }"), box, ball(0) + box,
+          ball(0, "friction = 0\nrestitution = 0.5") + wall})
+        for (const bool sleeps : {false, true}) {
+            const Scene scene =
+                load_text("[physics]\nsleeping = " + toml_text(sleeps) + "\n" + bodies + wall);
+            World world(scene.bodies, *scene.physics);
+            const Needs& step = world.simulation().needs;
+            SCOPED_TRACE(bodies);
+            EXPECT_EQ(needs(scene, "friction"), step.friction);
+            EXPECT_EQ(needs(scene, "restitution"), step.restitution);
+            EXPECT_EQ(needs(scene, "rotors and angular velocities"), step.turning);
+            EXPECT_EQ(needs(scene, "gyroscopic term and 6x6 inertia"), step.uneven_inertia);
+            EXPECT_EQ(needs(scene, "sleeping"), sleeps);
+        }
+    // A ball at rest on a wall falls asleep where it may.
+    for (const bool sleeps : {false, true}) {
+        const Scene scene =
+            load_text("[physics]\nsleeping = " + toml_text(sleeps) + "\n" + ball(0) + wall);
+        World world(scene.bodies, *scene.physics);
+        StepReport report;
+        for (int step = 0; step < 480; ++step) report = world.step(1.0 / 240);
+        EXPECT_GT(report.contacts, 0u);
+        EXPECT_EQ(needs(scene, "sleeping"), report.asleep > 0);
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::scenes
