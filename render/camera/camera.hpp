@@ -2,12 +2,18 @@
 
 #include "core/algebra/vector.hpp"
 #include "render/description.hpp"
-#include "render/scene/ray.hpp"
+#include "render/ray.hpp"
 
 namespace tesserae::render {
 
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
+
+/// Where view rays may start along the camera's fourth axis [m]: a pinhole's at 0. Every view ray
+/// stays in the slice that it starts in.
+struct SliceRange {
+    double low = 0, high = 0;
+};
 
 /// A ray that stays in a hyperplane parallel to the camera's. In camera coordinates it has three
 /// directions only: what film lists and Embree work with.

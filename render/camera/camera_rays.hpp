@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "render/camera/camera.hpp"
-#include "render/scene/slice.hpp"
 
 namespace tesserae::render {
 

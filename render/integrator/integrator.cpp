@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/light/cap.hpp"
 #include "render/material/dielectric.hpp"
 #include "render/picture_needs.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 namespace {

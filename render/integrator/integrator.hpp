@@ -9,9 +9,9 @@
 #include "render/integrator/shading.hpp"
 #include "render/light/light_set.hpp"
 #include "render/material/bsdf.hpp"
+#include "render/sampling/sampler.hpp"
 #include "render/scene/glass_bodies.hpp"
 #include "render/scene/ray_scene.hpp"
-#include "render/tile/sampler.hpp"
 
 namespace tesserae::render {
 

@@ -1,5 +1,5 @@
 #include "render/integrator/integrator.hpp"
-#include "render/light/cap.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 namespace {

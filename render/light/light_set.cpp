@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/shape/hypersphere.hpp"
-#include "render/light/cap.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/description.hpp"
-#include "render/scene/ray.hpp"
+#include "render/ray.hpp"
 
 namespace tesserae::render {
 

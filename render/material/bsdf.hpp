@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "render/light/cap.hpp"
 #include "render/material/surface.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 

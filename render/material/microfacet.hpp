@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/light/cap.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/simd/simd.hpp"
+#include "render/ray.hpp"
 #include "render/scene/placed_bodies.hpp"
-#include "render/scene/ray.hpp"
 
 namespace tesserae::render {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "render/picture.hpp"
+#include "render/ray.hpp"
 #include "render/scene/placed_bodies.hpp"
-#include "render/scene/ray.hpp"
 
 namespace tesserae::render {
 

@@ -8,12 +8,6 @@
 
 namespace tesserae::render {
 
-/// Where view rays may start along the camera's fourth axis [m]: a pinhole's at 0. Every view ray
-/// stays in the slice that it starts in.
-struct SliceRange {
-    double low = 0, high = 0;
-};
-
 /// What a view ray can meet of a body: a sphere and a box that hold its slices by the camera's
 /// hyperplane, and the film rectangle that holds their picture from the pinhole. Rounded outward.
 /// An unbounded body has an infinite radius, box and rectangle.

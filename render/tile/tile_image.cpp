@@ -9,9 +9,9 @@
 
 #include "core/error.hpp"
 #include "render/integrator/integrator.hpp"
+#include "render/sampling/sampler.hpp"
 #include "render/scene/film_list.hpp"
 #include "render/tile/pixel_estimate.hpp"
-#include "render/tile/sampler.hpp"
 
 namespace tesserae::render {
 namespace {

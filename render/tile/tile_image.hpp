@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/scene/frame_scene.hpp"
+#include "render/tile/frame_scene.hpp"
 #include "render/tile/tiles.hpp"
 
 namespace tesserae::render {

@@ -6,7 +6,7 @@
 #include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
 #include "render/picture_needs.hpp"
-#include "render/scene/frame_scene.hpp"
+#include "render/tile/frame_scene.hpp"
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/memory.hpp"
 #include "scenes/timeline.hpp"

@@ -5,8 +5,8 @@
 #include "render/light/light_set.hpp"
 #include "render/material/bsdf.hpp"
 #include "render/picture_needs.hpp"
-#include "render/scene/frame_scene.hpp"
 #include "render/scene/slice.hpp"
+#include "render/tile/frame_scene.hpp"
 #include "scenes/load/picture_keys.hpp"
 
 namespace tesserae::scenes {

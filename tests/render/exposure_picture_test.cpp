@@ -96,7 +96,7 @@ TEST(Exposure, WhatStandsStillLooksTheSameWithAnOpenShutter) {
     render(scene, folder / "closed.exr");
     scene.closing = scene.bodies;
     render(scene, folder / "open.exr");
-    EXPECT_EQ(bytes_of(folder / "closed.exr"), bytes_of(folder / "open.exr"));
+    EXPECT_EQ(content(folder / "closed.exr"), content(folder / "open.exr"));
 }
 
 TEST(SliceSheet, EveryCellIsTheFrameOfACameraMovedAlongTheFourthAxis) {
@@ -173,8 +173,8 @@ TEST(Exposure, BytesDoNotDependOnThreads) {
     render(scene, folder / "1.exr", folder / "1.png", 1);
     for (const int threads : {2, 3, 8}) {
         render(scene, folder / "n.exr", folder / "n.png", threads);
-        EXPECT_EQ(bytes_of(folder / "1.exr"), bytes_of(folder / "n.exr")) << threads;
-        EXPECT_EQ(bytes_of(folder / "1.png"), bytes_of(folder / "n.png")) << threads;
+        EXPECT_EQ(content(folder / "1.exr"), content(folder / "n.exr")) << threads;
+        EXPECT_EQ(content(folder / "1.png"), content(folder / "n.png")) << threads;
     }
 }
 

@@ -71,8 +71,8 @@ TEST(Frame, SameBytesAtAnyThreadCount) {
     const FrameStats once = render(scene, folder / "1.exr", folder / "1.png", 1);
     for (int threads : {2, 3, 8}) {
         const FrameStats again = render(scene, folder / "n.exr", folder / "n.png", threads);
-        EXPECT_EQ(bytes_of(folder / "n.exr"), bytes_of(folder / "1.exr")) << threads;
-        EXPECT_EQ(bytes_of(folder / "n.png"), bytes_of(folder / "1.png")) << threads;
+        EXPECT_EQ(content(folder / "n.exr"), content(folder / "1.exr")) << threads;
+        EXPECT_EQ(content(folder / "n.png"), content(folder / "1.png")) << threads;
         EXPECT_EQ(again.view_rays, once.view_rays);
         EXPECT_EQ(again.shadow_rays, once.shadow_rays);
         EXPECT_EQ(again.distance_evaluations, once.distance_evaluations);
@@ -92,7 +92,7 @@ TEST(Frame, TileSizeChangesNoPixel) {
         scene.settings.tile = tile;
         render(scene, folder / "b.exr", folder / "b.png");
         expect_same_pixels(read_exr(folder / "b.exr"), whole);
-        EXPECT_EQ(bytes_of(folder / "b.png"), bytes_of(folder / "a.png")) << tile;
+        EXPECT_EQ(content(folder / "b.png"), content(folder / "a.png")) << tile;
     }
 }
 
@@ -102,7 +102,7 @@ TEST(Frame, CompressionChangesTheFileAndNoPixel) {
     scene.settings.compression = Compression::kNone;
     render(scene, folder / "none.exr");
     const Image none = read_exr(folder / "none.exr");
-    std::set<std::string> files = {bytes_of(folder / "none.exr")};
+    std::set<std::string> files = {content(folder / "none.exr")};
     for (const auto compression :
          {Compression::kRle, Compression::kZips, Compression::kZip, Compression::kPiz}) {
         scene.settings.compression = compression;
@@ -110,8 +110,8 @@ TEST(Frame, CompressionChangesTheFileAndNoPixel) {
         const Image small = read_exr(folder / "small.exr");
         EXPECT_EQ(small.planes, none.planes);
         EXPECT_EQ(small.ids, none.ids);
-        EXPECT_LT(bytes_of(folder / "small.exr").size(), bytes_of(folder / "none.exr").size());
-        files.insert(bytes_of(folder / "small.exr"));
+        EXPECT_LT(content(folder / "small.exr").size(), content(folder / "none.exr").size());
+        files.insert(content(folder / "small.exr"));
     }
     EXPECT_EQ(files.size(), 5u);
 }
@@ -368,7 +368,7 @@ TEST(Frame, FullDiskLeavesNothing) {
     const Folder folder;
     const std::atomic<bool> stop = false;
     render_frame(scene.picture(), {}, folder / "a.exr", folder / "a.png", stop);
-    const rlim_t whole = bytes_of(folder / "a.exr").size();
+    const rlim_t whole = content(folder / "a.exr").size();
     std::filesystem::remove(folder / "a.exr");
     std::filesystem::remove(folder / "a.png");
     rlimit old = {};

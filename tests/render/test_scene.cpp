@@ -6,10 +6,6 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <sstream>
 
 #include "render/frame.hpp"
 
@@ -92,29 +88,10 @@ Hit nearest_of_all(const PlacedBodies& placed, const Ray& ray, const Settings& s
     return best;
 }
 
-Folder::Folder() {
-    static std::atomic<int> number = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tesserae-render-" + std::to_string(getpid()) + "-" + std::to_string(number++));
-    std::filesystem::create_directory(path_);
-}
-
-Folder::~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
 std::size_t Folder::count() const {
     std::size_t n = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path_)) ++n;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path())) ++n;
     return n;
-}
-
-std::string bytes_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream out;
-    out << in.rdbuf();
-    return out.str();
 }
 
 Image read_exr(const std::filesystem::path& path) {

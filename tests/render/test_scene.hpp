@@ -11,6 +11,8 @@
 
 #include "render/picture.hpp"
 #include "render/scene/intersect.hpp"
+#include "tests/content.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace tesserae::render {
 
@@ -55,18 +57,13 @@ Hit nearest_of_all(const PlacedBodies& placed, const Ray& ray, const Settings& s
                    FrameStats& stats);
 
 /// A folder of the test's own, removed at the end.
-class Folder {
+class Folder : public tesserae::testing::TemporaryFolder {
   public:
-    Folder();
-    ~Folder();
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    Folder() : TemporaryFolder("render") {}
     std::size_t count() const;  ///< of the entries
-
-  private:
-    std::filesystem::path path_;
 };
 
-std::string bytes_of(const std::filesystem::path& file);
+using tesserae::testing::content;
 
 /// An EXR file as OpenEXR's own reader sees it.
 struct Image {

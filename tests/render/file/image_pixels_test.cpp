@@ -194,7 +194,7 @@ void write(const fs::path& path, const std::string& bytes) {
 TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
     const Pixels picture;
     picture.write_tiles(path_, 16, Imf::ZIP_COMPRESSION);
-    const std::string good = bytes_of(path_);
+    const std::string good = content(path_);
     // The data window 30000 x 30000, and tiles of one pixel or of 65536.
     const auto at = [&](const char* name) {
         const std::string text = std::string(name) + '\0';
@@ -232,7 +232,7 @@ TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
                            : (round % 3 == 1 ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION);
         round % 2 == 0 ? picture.write_lines(path_, compression)
                        : picture.write_tiles(path_, 16, compression);
-        std::string bytes = bytes_of(path_);
+        std::string bytes = content(path_);
         if (round % 5 == 0) {
             bytes.resize(random() % bytes.size());
         } else {

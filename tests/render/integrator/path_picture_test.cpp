@@ -50,8 +50,8 @@ TEST_P(EachIntegrator, HasTheSameBytesAtAnyThreadCount) {
     EXPECT_EQ(once.invalid_samples, 0u);
     for (int threads : {2, 7}) {
         const FrameStats again = render(scene, folder / "n.exr", folder / "n.png", threads);
-        EXPECT_EQ(bytes_of(folder / "n.exr"), bytes_of(folder / "1.exr")) << threads;
-        EXPECT_EQ(bytes_of(folder / "n.png"), bytes_of(folder / "1.png")) << threads;
+        EXPECT_EQ(content(folder / "n.exr"), content(folder / "1.exr")) << threads;
+        EXPECT_EQ(content(folder / "n.png"), content(folder / "1.png")) << threads;
         EXPECT_EQ(again.bounce_rays, once.bounce_rays);
         EXPECT_EQ(again.shadow_rays, once.shadow_rays);
     }

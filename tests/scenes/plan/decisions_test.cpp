@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "core/dynamics/world.hpp"
-#include "render/scene/frame_scene.hpp"
+#include "render/tile/frame_scene.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/plan/plan.hpp"

@@ -1,4 +1,4 @@
-#include "render/tile/sampler.hpp"
+#include "render/sampling/sampler.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/scene/frame_scene.hpp"
+#include "render/tile/frame_scene.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/light/cap.hpp"
+#include "render/sampling/cap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/tile/filter.hpp"
+#include "render/sampling/filter.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "render/tile/sampler.hpp"
+#include "render/sampling/sampler.hpp"
 
 namespace tesserae::render {
 namespace {

@@ -7,8 +7,8 @@
 #include "render/camera/camera_rays.hpp"
 #include "render/integrator/integrator.hpp"
 #include "render/picture_needs.hpp"
+#include "render/sampling/filter.hpp"
 #include "render/scene/view_scene.hpp"
-#include "render/tile/filter.hpp"
 
 namespace tesserae::render {
 
