@@ -23,8 +23,8 @@
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film/film.hpp"
+#include "scenes/film/simulate.hpp"
 #include "scenes/load/load.hpp"
-#include "scenes/trajectory/simulate.hpp"
 
 namespace tesserae::bench {
 namespace {

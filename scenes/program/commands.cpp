@@ -11,6 +11,7 @@
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
 #include "scenes/film/film.hpp"
+#include "scenes/film/simulate.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
@@ -20,7 +21,6 @@
 #include "scenes/program/compare_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/timeline.hpp"
-#include "scenes/trajectory/simulate.hpp"
 
 namespace tesserae::scenes {
 namespace {

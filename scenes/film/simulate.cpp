@@ -1,4 +1,4 @@
-#include "scenes/trajectory/simulate.hpp"
+#include "scenes/film/simulate.hpp"
 
 #include <algorithm>
 #include <chrono>
