@@ -58,7 +58,8 @@ std::vector<Knobs> knobs_of(Kind kind) {
     for (int steps : {60, 120, 240, 480, 960}) {
         if (kind == Kind::kFlight) list.push_back({.steps_per_second = steps});
         if (kind == Kind::kRotation)
-            for (Integrator integrator : {Integrator::kMidpoint, Integrator::kEuler})
+            for (RotationIntegrator integrator :
+                 {RotationIntegrator::kMidpoint, RotationIntegrator::kEuler})
                 list.push_back({.integrator = integrator, .steps_per_second = steps});
         if (kind != Kind::kContact && kind != Kind::kCrowd) continue;
         const int most = kind == Kind::kCrowd ? kMostOfCrowds : kMostOfContacts;
@@ -71,11 +72,11 @@ std::vector<Knobs> knobs_of(Kind kind) {
     return list;
 }
 
-const char* name_of(Integrator integrator) {
+const char* name_of(RotationIntegrator integrator) {
     switch (integrator) {
-        case Integrator::kEuler:
+        case RotationIntegrator::kEuler:
             return "euler";
-        case Integrator::kMidpoint:
+        case RotationIntegrator::kMidpoint:
             return "midpoint";
     }
     return "unknown";

@@ -25,7 +25,7 @@ std::vector<Listed> all_experiments();
 /// The configurations in which experiments of a kind are measured.
 std::vector<Knobs> knobs_of(Kind kind);
 
-const char* name_of(Integrator integrator);
+const char* name_of(RotationIntegrator integrator);
 const char* name_of(Solver solver);
 
 }  // namespace tesserae::bench

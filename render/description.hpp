@@ -86,7 +86,7 @@ struct CameraDescription {
 };
 
 /// Which integrator makes the light: DirectIntegrator, Lambert and soft shadows in closed form; or
-/// PathIntegrator, global illumination. (tesserae::Integrator, in core, turns bodies.)
+/// PathIntegrator, global illumination.
 enum class Integrator { kDirect, kPath };
 enum class Intersector { kTrace, kAnalytic };
 

@@ -18,7 +18,7 @@ inline const Vec4 kDown{0, -kGravity, 0, 0};
 
 /// What is varied to trade error for run time.
 struct Knobs {
-    Integrator integrator = PhysicsSettings{}.integrator;
+    RotationIntegrator integrator = PhysicsSettings{}.integrator;
     Solver solver = PhysicsSettings{}.solver;
     int substeps = PhysicsSettings{}.substeps;      ///< a step
     int iterations = PhysicsSettings{}.iterations;  ///< a sub-step

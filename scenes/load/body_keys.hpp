@@ -24,7 +24,7 @@ constexpr double kLeastMass = 1e-60, kLargestMass = 1e60;
 
 // In the order of the enumerations in core/dynamics/state/settings.hpp.
 constexpr std::string_view kSolvers[] = {"impulse", "soft"};
-constexpr std::string_view kIntegrators[] = {"euler", "midpoint"};
+constexpr std::string_view kRotationIntegrators[] = {"euler", "midpoint"};
 constexpr Flag<BodyType> kFixed[] = {{"position", &BodyType::fixed_position},
                                      {"rotation", &BodyType::fixed_rotation}};
 
@@ -55,7 +55,7 @@ void physics_keys(auto& self, const auto& visit) {
     visit("iterations", self.iterations, IntegerRange{1, 10000});
     visit("substeps", self.substeps, IntegerRange{1, 1000});
     visit("solver", self.solver, Names{kSolvers});
-    visit("integrator", self.integrator, Names{kIntegrators});
+    visit("integrator", self.integrator, Names{kRotationIntegrators});
     visit("sleeping", self.sleeping);
     visit("seed", self.seed, IntegerRange{});
 }

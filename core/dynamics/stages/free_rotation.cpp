@@ -122,12 +122,12 @@ void turn_by_midpoint(const TypeProperties& type, double h, Rotor& rotor, Bivect
 
 }  // namespace
 
-void turn_freely(const TypeProperties& type, Integrator integrator, double h, Rotor& rotor,
+void turn_freely(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
                  Bivector& omega) {
     if (omega == Bivector{}) return;
     if (type.isotropic) {
         rotor = turned(rotor, omega, h);
-    } else if (integrator == Integrator::kMidpoint) {
+    } else if (integrator == RotationIntegrator::kMidpoint) {
         turn_by_midpoint(type, h, rotor, omega);
     } else {
         const Bivector momentum = angular_momentum(type, rotor, omega);

@@ -16,7 +16,7 @@ namespace tesserae {
 /// rigid body systems", 1993, here for the two quaternions of Spin(4). kEuler is of first order and
 /// keeps |L|^2 and L ^ L only.
 /// @param omega   world [rad/s]
-void turn_freely(const TypeProperties& type, Integrator integrator, double h, Rotor& rotor,
+void turn_freely(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
                  Bivector& omega);
 
 }  // namespace tesserae

@@ -7,7 +7,7 @@
 namespace tesserae {
 
 /// How a body turns freely; its angular momentum stays in both.
-enum class Integrator {
+enum class RotationIntegrator {
     kEuler,     ///< with the angular velocity of the step's start
     kMidpoint,  ///< with that of the middle, implicitly: keeps the energy too
 };
@@ -26,7 +26,7 @@ struct PhysicsSettings {
     int substeps = 1;     ///< of equal length, a step: pairs are looked for once, contacts in each
     int iterations = 10;  ///< of the contact solver, a sub-step
     Solver solver = Solver::kImpulse;
-    Integrator integrator = Integrator::kMidpoint;
+    RotationIntegrator integrator = RotationIntegrator::kMidpoint;
     bool sleeping = false;  ///< islands at rest are left out until something touches them
     std::uint64_t seed = 1;
 };

@@ -110,7 +110,7 @@ TEST(LoadScene, ReadsEverything) {
     EXPECT_EQ(scene.name, "rich");
     ASSERT_TRUE(scene.physics);
     EXPECT_EQ(scene.physics->gravity, Vec4(0, -9.81, 0, 0.1));
-    EXPECT_EQ(scene.physics->integrator, Integrator::kMidpoint);
+    EXPECT_EQ(scene.physics->integrator, RotationIntegrator::kMidpoint);
     EXPECT_EQ(scene.physics->seed, 9223372036854775807U);
     ASSERT_EQ(scene.bodies.size(), 2U + 120U);
     const BodyType& floor = scene.bodies.type_of(0);
@@ -261,7 +261,7 @@ TEST(LoadScene, TakesEveryKeyOfPhysicsOrItsDefault) {
         const Scene scene = load_text(text);
         EXPECT_EQ(scene.physics->substeps, 1000);
         EXPECT_EQ(scene.physics->solver, Solver::kSoft);
-        EXPECT_EQ(scene.physics->integrator, Integrator::kEuler);
+        EXPECT_EQ(scene.physics->integrator, RotationIntegrator::kEuler);
         EXPECT_TRUE(scene.physics->sleeping);
         EXPECT_EQ(scene.hash, load_text(all).hash);
     }

@@ -20,7 +20,7 @@ const Bivector kSpin{2.0, -1.1, 0.7, 1.3, -0.4, 0.9};
 
 Vec4 second_moments_of_box(const Vec4& sides) { return kMass / 12 * sides.cwiseAbs2(); }
 
-World spinning_box(const Vec4& sides, const Bivector& omega, Integrator integrator) {
+World spinning_box(const Vec4& sides, const Bivector& omega, RotationIntegrator integrator) {
     Bodies bodies;
     add(bodies, box_type(sides, kMass), Vec4::Zero(), Vec4::Zero(), omega);
     PhysicsSettings settings;
@@ -77,7 +77,7 @@ struct Errors {
     double rotation, energy, invariant;
 };
 
-Errors errors_after_a_second(Integrator integrator, int steps) {
+Errors errors_after_a_second(RotationIntegrator integrator, int steps) {
     World world = spinning_box(kSides, kSpin, integrator);
     const Vec4 J = second_moments_of_box(kSides);
     const double energy = kinetic_energy(world.bodies());
@@ -90,7 +90,8 @@ Errors errors_after_a_second(Integrator integrator, int steps) {
 }
 
 TEST(FreeRotation, KeepsAngularMomentumInTheWorldFrame) {
-    for (Integrator integrator : {Integrator::kEuler, Integrator::kMidpoint}) {
+    for (RotationIntegrator integrator :
+         {RotationIntegrator::kEuler, RotationIntegrator::kMidpoint}) {
         World world = spinning_box(kSides, kSpin, integrator);
         const Vec4 J = second_moments_of_box(kSides);
         const Mat4 before = momentum(world.bodies(), J);
@@ -103,8 +104,8 @@ TEST(FreeRotation, KeepsAngularMomentumInTheWorldFrame) {
 }
 
 TEST(FreeRotation, ByEulerConvergesInFirstOrder) {
-    const Errors coarse = errors_after_a_second(Integrator::kEuler, 480);
-    const Errors fine = errors_after_a_second(Integrator::kEuler, 960);
+    const Errors coarse = errors_after_a_second(RotationIntegrator::kEuler, 480);
+    const Errors fine = errors_after_a_second(RotationIntegrator::kEuler, 960);
     // Halving the step halves the errors; the next order adds its own part, below 1/10 here.
     EXPECT_NEAR(coarse.rotation / fine.rotation, 2, 0.2) << fine.rotation;
     EXPECT_NEAR(coarse.energy / fine.energy, 2, 0.2) << fine.energy;
@@ -112,8 +113,8 @@ TEST(FreeRotation, ByEulerConvergesInFirstOrder) {
 }
 
 TEST(FreeRotation, ByMidpointConvergesInSecondOrder) {
-    const Errors coarse = errors_after_a_second(Integrator::kMidpoint, 480);
-    const Errors fine = errors_after_a_second(Integrator::kMidpoint, 960);
+    const Errors coarse = errors_after_a_second(RotationIntegrator::kMidpoint, 480);
+    const Errors fine = errors_after_a_second(RotationIntegrator::kMidpoint, 960);
     EXPECT_NEAR(coarse.rotation / fine.rotation, 4, 0.4) << fine.rotation;
     EXPECT_LT(fine.rotation, 1e-4);
 }
@@ -130,7 +131,7 @@ void expect_invariants(const Vec4& sides, const Bivector& spin) {
     const Bivector l = to_bivector(L);
     double worst = 0;
     for (int i = 1; i <= 2000000; ++i) {
-        turn_freely(type, Integrator::kMidpoint, 1.0 / 480, bodies.rotor[0],
+        turn_freely(type, RotationIntegrator::kMidpoint, 1.0 / 480, bodies.rotor[0],
                     bodies.angular_velocity[0]);
         if (i % 1000 != 0) continue;
         const Bivector now = to_bivector(momentum(bodies, J));
@@ -150,7 +151,8 @@ TEST(FreeRotation, ByMidpointKeepsAllInvariants) {
 }
 
 TEST(FreeRotation, OfAThousandRadiansASecondKeepsItsEnergy) {
-    World world = spinning_box(kSides, {900, -300, 200, 100, -50, 20}, Integrator::kMidpoint);
+    World world =
+        spinning_box(kSides, {900, -300, 200, 100, -50, 20}, RotationIntegrator::kMidpoint);
     const double energy = kinetic_energy(world.bodies());
     for (int i = 0; i < 240; ++i) world.step(1.0 / 60);
     // 16 rad a step, done in pieces; rounding of 240 times 32 pieces, some 10 ulp each.
@@ -183,7 +185,7 @@ double distance_from_euler(const Triple& start, double time, int steps) {
     omega.yz = static_cast<double>(start[0]);
     omega.xz = -static_cast<double>(start[1]);
     omega.xy = static_cast<double>(start[2]);
-    World world = spinning_box(kSides, omega, Integrator::kMidpoint);
+    World world = spinning_box(kSides, omega, RotationIntegrator::kMidpoint);
     for (int i = 0; i < steps; ++i) world.step(time / steps);
     const Bodies& bodies = world.bodies();
     const Bivector body = rotate(reverse(bodies.rotor[0]), bodies.angular_velocity[0]);
