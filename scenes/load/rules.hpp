@@ -112,5 +112,8 @@ struct Required {
         WriteKeys{out}(key, value, rule);
     }
 };
+// Until clang 17 guesses it.
+template <class R>
+Required(const char*, R) -> Required<R>;
 
 }  // namespace tesserae::scenes
