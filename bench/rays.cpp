@@ -14,11 +14,11 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
+#include "core/simd/simd.hpp"
 #include "parallel/threads.hpp"
 #include "render/light/shadow.hpp"
 #include "render/scene/embree.hpp"
 #include "render/scene/film_list.hpp"
-#include "render/scene/lanes.hpp"
 #include "render/scene/ray_scene.hpp"
 #include "render/scene/view_scene.hpp"
 #include "render/tile/tile_image.hpp"
@@ -164,13 +164,13 @@ std::vector<ViewRay> view_rays(const Camera& camera) {
 
 double loop_rate() {
     struct Spheres {
-        Lanes x, y, z, square;
+        simd::Float8 x, y, z, square;
     };
     std::mt19937 random(1);
     std::uniform_real_distribution<float> unit(-1, 1);
     std::vector<Spheres> spheres(128);
     for (Spheres& s : spheres)
-        for (int i = 0; i < kLanes; ++i)
+        for (std::size_t i = 0; i < simd::kLanes; ++i)
             s.x[i] = unit(random), s.y[i] = unit(random), s.z[i] = 5 + unit(random),
             s.square[i] = 0.01f;
     constexpr int kRays = 4000;
@@ -180,8 +180,8 @@ double loop_rate() {
         for (int r = 0; r < kRays; ++r) {
             const float x = 0.2f * unit(random), y = 0.2f * unit(random);
             for (const Spheres& s : spheres) {
-                const Lanes along = s.x * x + s.y * y + s.z;
-                const Lanes off = s.x * s.x + s.y * s.y + s.z * s.z - along * along;
+                const simd::Float8 along = s.x * x + s.y * y + s.z;
+                const simd::Float8 off = s.x * s.x + s.y * s.y + s.z * s.z - along * along;
                 met += not_above(off, s.square);
             }
         }
