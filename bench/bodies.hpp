@@ -9,7 +9,7 @@ namespace tesserae::bench {
 
 using std::numbers::pi;
 using testing::add, testing::add_walls, testing::heap_of_spheres;
-using testing::plane_type, testing::sphere_type;
+using testing::plane_type, testing::random_vector, testing::sphere_type;
 
 /// Spheres of one size, uniformly random in a 4D cube about `centre` with one to 2^4 m^4; they may
 /// overlap.

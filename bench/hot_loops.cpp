@@ -39,13 +39,6 @@ constexpr int kInputs = 10000;
 
 using Random = std::mt19937_64;
 
-Vec4 random_vector(Random& random, double half_side) {
-    std::uniform_real_distribution<> along(-half_side, half_side);
-    Vec4 v;
-    for (int i = 0; i < 4; ++i) v[i] = along(random);
-    return v;
-}
-
 Vec4 random_direction(Random& random) {
     std::normal_distribution<> normal;
     Vec4 v;

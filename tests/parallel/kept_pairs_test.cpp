@@ -21,13 +21,6 @@ using namespace tesserae::testing;
 
 constexpr double kSlowStep = 1.0 / 120;
 
-Vec4 random_vector(std::mt19937_64& engine, double half_side) {
-    std::uniform_real_distribution<> along(-half_side, half_side);
-    Vec4 v;
-    for (int k = 0; k < 4; ++k) v[k] = along(engine);
-    return v;
-}
-
 /// Bodies that go their ways, some of which now and then change their velocity, are put elsewhere,
 /// fall asleep or wake: the pairs are those that testing all finds, from few searches.
 TEST(KeptPairs, AreThoseThatTestingAllFinds) {

@@ -77,6 +77,13 @@ inline void run(World& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
+inline Vec4 random_vector(std::mt19937_64& random, double half_side) {
+    std::uniform_real_distribution<> along(-half_side, half_side);
+    Vec4 v;
+    for (int i = 0; i < 4; ++i) v[i] = along(random);
+    return v;
+}
+
 /// Adds a body of a type that is there already.
 inline BodyId add(Bodies& bodies, std::uint32_t type, const Vec4& position,
                   const Vec4& velocity = Vec4::Zero(), const Bivector& omega = {},

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "tests/child_process.hpp"
 #include "tests/content.hpp"
 #include "tests/error_of.hpp"
 #include "tests/temporary_folder.hpp"
@@ -23,20 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 using tesserae::testing::content;
 using tesserae::testing::error_of;
+using tesserae::testing::status_of_child;
 
 class FileWriterTest : public ::testing::Test {
   protected:
     const tesserae::testing::TemporaryFolder folder_{"file_writer"};
 };
-
-/// Exit status of a child process that runs `work`, negative the signal that ended it.
-int status_of_child(const std::function<int()>& work) {
-    const pid_t child = ::fork();
-    if (child == 0) ::_exit(work());
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
 
 /// From here on this process cannot make files longer than this, as on a full disk.
 void limit_file_size(rlim_t bytes) {

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "tests/child_process.hpp"
 #include "tests/error_of.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using tesserae::testing::error_of;
+using tesserae::testing::status_of_child;
 
 class TrajectoryTest : public ::testing::Test {
   protected:
@@ -39,14 +41,6 @@ class TrajectoryTest : public ::testing::Test {
     const tesserae::testing::TemporaryFolder folder_{"trajectory"};
     const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
-
-int status_of_child(const std::function<int()>& work) {
-    const pid_t child = ::fork();
-    if (child == 0) ::_exit(work());
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
 
 void expect_rows(const TrajectoryReader& reader, std::uint64_t begin, std::size_t bodies) {
     const std::vector<StepFacts> facts = reader.facts();

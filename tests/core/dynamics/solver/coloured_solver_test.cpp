@@ -17,13 +17,6 @@ using namespace testing;
 
 using Generator = std::mt19937_64;
 
-Vec4 random_vector(Generator& random, double half_side) {
-    std::uniform_real_distribution<> along(-half_side, half_side);
-    Vec4 v;
-    for (int i = 0; i < 4; ++i) v[i] = along(random);
-    return v;
-}
-
 Bivector random_bivector(Generator& random) {
     // One draw after the other: the order of a call's arguments is the compiler's.
     const Vec4 a = random_vector(random, 1), b = random_vector(random, 1);
