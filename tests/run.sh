@@ -30,10 +30,10 @@ check() {
 # oneTBB is not: with it, each correct hand-off in a task, graph or pipeline is reported as a race,
 # and suppressions for the task scheduler's frames would hide every race inside a task as well. So
 # oneTBB is built from the source of the same Debian package with the sanitizer in it, and no
-# suppression is needed. What is still not seen: races inside HDF5, OpenEXR, libpng and zlib, races
-# on paths that no test takes, and races between pieces of work that happen to be ordered by the
-# scheduler's own locks in the run at hand. Ordering by bare fences, which the sanitizer does not
-# know, occurs only in oneTBB's sleeping threads.
+# suppression is needed but for Embree's (tsan.supp). What is still not seen: races inside Embree,
+# HDF5, OpenEXR, libpng and zlib, races on paths that no test takes, and races between pieces of
+# work that happen to be ordered by the scheduler's own locks in the run at hand. Ordering by bare
+# fences, which the sanitizer does not know, occurs only in oneTBB's sleeping threads.
 build_tbb_for_tsan() {
     local folder=$root/build/tsan-tbb version site suite
     [ -e "$folder/build/lib_relwithdebinfo/libtbb.so.12" ] && return
@@ -79,6 +79,7 @@ case "${1:-}" in
     check asan -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTESSERAE_SANITIZE=address,undefined
     if build_tbb_for_tsan; then
         LD_LIBRARY_PATH=$root/build/tsan-tbb/build/lib_relwithdebinfo \
+            TSAN_OPTIONS=suppressions=$root/tests/tsan.supp \
             check tsan -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTESSERAE_SANITIZE=thread
     else
         failed+=(tsan-tbb)
