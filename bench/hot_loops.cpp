@@ -194,6 +194,7 @@ struct StepBeforeSolver {
         step.velocity = velocity;
         step.angular_velocity = angular_velocity;
         step.impulses = impulses;
+        step.has_rows.assign(step.islands.size(), 0);
         return time;
     }
 };

@@ -19,6 +19,7 @@
 #include "bench/thread_time.hpp"
 #include "core/dynamics/solver/solver.hpp"
 #include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/stages/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
@@ -193,6 +194,7 @@ Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
         StepData step = found->step;
         return time_of([&] {
             builder->build(simulation, step);
+            integrate_velocities(simulation, step, {0, simulation.bodies.size()});
             for (std::size_t i = 0; i < step.islands.size(); ++i) {
                 solve_island(simulation, step, i);
                 relax_island(simulation, step, i);

@@ -55,6 +55,10 @@ class AllThreads {
 
 }  // namespace
 
+void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+    tesserae::solve_coloured_blow(simulation, step, island, AllThreads{});
+}
+
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
     tesserae::solve_coloured_island(simulation, step, island, AllThreads{});
 }

@@ -4,8 +4,10 @@
 
 namespace tesserae::parallel {
 
-/// core's solve_island() and relax_island() of a coloured island on all threads: colour by colour,
-/// the contacts of a colour at once, with the same bits. What is left over is solved by one thread.
+/// core's solve_blow(), solve_island() and relax_island() of a coloured island on all threads:
+/// colour by colour, the contacts of a colour at once, with the same bits. What is left over is
+/// solved by one thread.
+void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island);
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
 

@@ -24,6 +24,7 @@ class ThreadedSchedule : public Schedule {
     bool any_range(std::size_t count, std::size_t grain, FunctionRef<bool(Range)> test) override;
     void find_pairs(const Simulation& simulation, StepData& step) override;
     void choose_pairs(const Simulation& simulation, StepData& step) override;
+    void solve_blows(const Simulation& simulation, StepData& step) override;
     void solve_islands(const Simulation& simulation, StepData& step) override;
     void relax_islands(const Simulation& simulation, StepData& step) override;
 

@@ -71,8 +71,8 @@ class InTesserae : public PeerEngine {
         times.make_rows = without_iterations.seconds.at(Stage::kSolveIslands);
         times.iterate = of.at(Stage::kSolveIslands) - times.make_rows;
         for (const Stage other :
-             {Stage::kAdvanceFirstHalf, Stage::kIntegrateVelocities, Stage::kAdvanceSecondHalf,
-              Stage::kRelaxIslands, Stage::kFinishStep})
+             {Stage::kAdvanceFirstHalf, Stage::kSolveBlows, Stage::kIntegrateVelocities,
+              Stage::kAdvanceSecondHalf, Stage::kRelaxIslands, Stage::kFinishStep})
             times.others += of.at(other);
         return times;
     }

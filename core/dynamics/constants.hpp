@@ -24,10 +24,23 @@ constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
 /// explode. Less, and a heavy load sinks in.
 constexpr double kLargestPush = 4;
 
-/// Approach speed above which restitution acts, as a multiple of what gravity adds in a sub-step:
-/// slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle; higher, bouncing
-/// ends too soon. Where there is no gravity every approach bounces.
+/// Approach speed above which bodies hit each other, as a multiple of what gravity adds in a
+/// sub-step: slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle;
+/// higher, bouncing ends too soon. Where there is no gravity every approach bounces.
 constexpr double kRestitutionKicks = 4;
+
+/// A blow of a small island is solved until no normal velocity changes by more than this part of
+/// its fastest approach in a sweep. More, and a box that is hit flat leaves turning.
+constexpr double kBlowResidual = 1e-4;
+
+/// Sweeps of it at most: this over the island's contacts, but not fewer than `iterations`. Fewer,
+/// and a body that hits much lighter ones is thrown back (a ball of 100 masses that hits one before
+/// a wall needs 1000 sweeps); more, and boxes that settle cost several times as much.
+constexpr std::size_t kBlowWork = 10000;
+
+/// The part for a large island, whose sweeps are `iterations` at most. Less, and large heaps cost
+/// more while they settle, as something hits something in every step.
+constexpr double kLargeBlowResidual = 1e-3;
 
 /// Contacts from which on an island is coloured and solved in float, eight at a time. Fewer are
 /// solved in double, one by one, in the order of their bodies, which suits towers listed from the

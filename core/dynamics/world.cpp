@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/stages/contacts.hpp"
 #include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/stages/sleeping.hpp"
@@ -46,14 +47,15 @@ StepReport World::step(double dt) {
 StepReport World::step(double dt, Schedule& schedule) {
     begin_step(simulation_, step_, dt);
     for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
-        advance_first_half(schedule);    // free motion to the middle, where contacts act
-        find_pairs(schedule);            // broad phase
-        find_contacts(schedule);         // narrow phase, contacts keyed by feature id
-        integrate_velocities(schedule);  // gravity
+        advance_first_half(schedule);  // free motion to the middle, where contacts act
+        find_pairs(schedule);          // broad phase
+        find_contacts(schedule);       // narrow phase, contacts keyed by feature id
         build_islands();
-        solve_islands(schedule);        // sequential impulses, warm started
-        advance_second_half(schedule);  // rotors projected to unit rotors
-        relax_islands(schedule);        // soft contacts give back the velocity that removed overlap
+        solve_blows(schedule);           // what hits: compression, restitution
+        integrate_velocities(schedule);  // gravity
+        solve_islands(schedule);         // what rests: sequential impulses, warm started
+        advance_second_half(schedule);   // rotors projected to unit rotors
+        relax_islands(schedule);  // soft contacts give back the velocity that removed overlap
     }
     return finish_step(schedule);
 }
@@ -98,16 +100,23 @@ void World::find_contacts(Schedule& schedule) {
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
 }
 
+void World::build_islands() {
+    const Observed stage(*this, Stage::kBuildIslands, step_.contacts.size());
+    island_builder_.build(simulation_, step_);
+}
+
+void World::solve_blows(Schedule& schedule) {
+    const Observed stage(*this, Stage::kSolveBlows, step_.islands.size());
+    const auto hits = [&](Range contacts) { return has_blow(simulation_, step_, contacts); };
+    if (schedule.any_range(step_.contacts.size(), kContactGrain, hits))
+        schedule.solve_blows(simulation_, step_);
+}
+
 void World::integrate_velocities(Schedule& schedule) {
     const Observed stage(*this, Stage::kIntegrateVelocities, simulation_.bodies.size());
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::integrate_velocities(simulation_, step_, bodies);
     });
-}
-
-void World::build_islands() {
-    const Observed stage(*this, Stage::kBuildIslands, step_.contacts.size());
-    island_builder_.build(simulation_, step_);
 }
 
 void World::solve_islands(Schedule& schedule) {

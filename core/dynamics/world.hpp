@@ -39,8 +39,9 @@ class World {
     void advance_first_half(Schedule& schedule);
     void find_pairs(Schedule& schedule);
     void find_contacts(Schedule& schedule);
-    void integrate_velocities(Schedule& schedule);
     void build_islands();
+    void solve_blows(Schedule& schedule);
+    void integrate_velocities(Schedule& schedule);
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
     void relax_islands(Schedule& schedule);

@@ -245,7 +245,7 @@ template <bool kFriction, bool kUneven, class F>
             tangent_change = tangent - old;
         }
         pair.apply(r_a, r_b, frame.world(tangent_change, change));
-        if (sweep.last) left = larger(left, velocity_left(lane, row.along, change));
+        if (sweep.measured) left = larger(left, velocity_left(lane, row.along, change));
     }
     pair.store();
     return left;
@@ -280,7 +280,7 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
     float most = 0;
     for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
         const auto left = solve_points<kFriction, kUneven>(stage, lane, batch, sweep);
-        if (sweep.last) most = std::max(most, largest_lane(left));
+        if (sweep.measured) most = std::max(most, largest_lane(left));
     });
     return most;
 }
@@ -313,9 +313,13 @@ void keep_general(const ColouredStage& stage, BatchRange batches) {
             Vec4 h;
             for (int axis = 0; axis < 4; ++axis) h[axis] = coloured.frames[i].h[axis].lane[k];
             for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
+                const float normal = coloured.rows[batch.row + p].along.impulse.lane[k];
+                if (stage.cause == Cause::kBlow) {
+                    stage.step.hit[batch.contact[k] + p] = normal > 0;
+                    continue;
+                }
                 ContactImpulse& impulse = stage.step.impulses[batch.contact[k] + p];
-                impulse.normal =
-                    stage.mass_unit * coloured.rows[batch.row + p].along.impulse.lane[k];
+                impulse.normal = stage.mass_unit * normal;
                 impulse.tangent.setZero();
                 if (!coloured.friction) continue;
                 Vec4 tangent = Vec4::Zero();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/dynamics/solver/sweep.hpp"
+#include "core/dynamics/solver/targets.hpp"
 
 namespace tesserae {
 
@@ -13,14 +14,15 @@ struct ColouredStage {
     const Simulation& simulation;
     StepData& step;
     double mass_unit;  ///< [kg]
+    Cause cause;
 };
 
 // Of round and of general batches: makes their rows and applies the impulses that they start from;
-// one iteration; step.impulses of their contacts. Batches of one colour may be worked on at the
-// same time.
+// one iteration; step.impulses of their contacts, or of a blow step.hit. Batches of one colour may
+// be worked on at the same time.
 
 void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
-/// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
+/// @return the largest change of a normal velocity [m/s] if it is measured, else 0
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_round(const ColouredStage& stage, BatchRange batches);
 

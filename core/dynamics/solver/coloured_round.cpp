@@ -90,7 +90,7 @@ template <bool kFriction, class F>
     apply(impulse, a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
-    return sweep.last ? velocity_left(lane, row.along, change) : F{};
+    return sweep.measured ? velocity_left(lane, row.along, change) : F{};
 }
 
 template <bool kFriction>
@@ -118,7 +118,7 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
     float most = 0;
     for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
         const auto left = solve_batch<kFriction>(stage, lane, batch, sweep);
-        if (sweep.last) most = std::max(most, largest_lane(left));
+        if (sweep.measured) most = std::max(most, largest_lane(left));
     });
     return most;
 }
@@ -140,8 +140,13 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
+            const float normal = coloured.round_rows[i].along.impulse.lane[k];
+            if (stage.cause == Cause::kBlow) {
+                stage.step.hit[batch.contact[k]] = normal > 0;
+                continue;
+            }
             ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];
-            impulse.normal = stage.mass_unit * coloured.round_rows[i].along.impulse.lane[k];
+            impulse.normal = stage.mass_unit * normal;
             impulse.tangent.setZero();
             if (!coloured.friction) continue;
             for (int axis = 0; axis < 4; ++axis)

@@ -48,6 +48,17 @@ void begin_changes(const ColouredStage& stage, Range bodies) {
     }
 }
 
+void keep_blow_motion(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        const BodyChange& change = step.coloured.changes[i];
+        const BodyMotion before = motion_of(step, id);
+        step.blow_motion[id] = {
+            before, before + BodyMotion{velocity_change(change), angular_change(change)}};
+    }
+}
+
 void add_changes(const ColouredStage& stage, Range bodies) {
     StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {

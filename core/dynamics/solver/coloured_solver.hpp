@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_kernels.hpp"
 
 namespace tesserae {
@@ -35,6 +36,8 @@ struct OneThread {
 
 /// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
 void begin_changes(const ColouredStage& stage, Range bodies);
+/// step.blow_motion of the bodies: with the changes of the compression, not added yet.
+void keep_blow_motion(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
@@ -44,10 +47,10 @@ void take_changes_back(const ColouredStage& stage, Range bodies);
 /// One coloured island and its colours.
 class ColouredIsland {
   public:
-    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island)
+    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step, all_.mass_unit[place_]} {}
+          stage_{simulation, step, all_.mass_unit[place_], cause} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
@@ -77,12 +80,11 @@ class ColouredIsland {
 
 /// @return the residual of the last iteration [m/s]
 template <class Threads>
-double iterate_coloured(const ColouredIsland& island, Pass pass, const Threads& threads,
-                        LaneCount lanes) {
+double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& effort,
+                        const Threads& threads, LaneCount lanes) {
     const ColouredStage& stage = island.stage();
-    double residual = 0;
-    for (int i = 0; i < stage.simulation.settings.iterations; ++i) {
-        const Sweep sweep = sweep_of(stage.simulation, pass, i);
+    return iterate(pass, effort, [&](Sweep sweep) {
+        double residual = 0;
         island.for_colours(
             threads, lanes, sweep.backward,
             [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
@@ -99,18 +101,16 @@ double iterate_coloured(const ColouredIsland& island, Pass pass, const Threads& 
                 if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
                 residual = std::max(residual, of_round);
             });
-    }
-    return residual;
+        return residual;
+    });
 }
 
-/// solve_island() of a coloured island.
+/// The rows of all contacts, and the impulses that they start from.
 template <class Threads>
-void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
-                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
-    const ColouredIsland coloured(simulation, step, island);
-    const ColouredStage& stage = coloured.stage();
-    threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_changes(stage, bodies); });
-    coloured.for_colours(
+void start_coloured(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
+    const ColouredStage& stage = island.stage();
+    threads.for_bodies(island.bodies(), [&](Range bodies) { begin_changes(stage, bodies); });
+    island.for_colours(
         threads, lanes, false,
         [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
             at_work.for_batches(batches.round, 1,
@@ -118,7 +118,57 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
             at_work.for_batches(batches.general, kManifoldPoints,
                                 [&](BatchRange piece) { start_general(stage, piece, at_once); });
         });
-    step.residual[island] = iterate_coloured(coloured, Pass::kSolve, threads, lanes);
+}
+
+/// What keep_round() and keep_general() keep of all contacts.
+template <class Threads>
+void keep_coloured(const ColouredIsland& island, const Threads& threads) {
+    const ColouredStage& stage = island.stage();
+    island.for_colours(threads, LaneCount::kOne, false,
+                       [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+                           at_work.for_batches(batches.round, 1,
+                                               [&](BatchRange piece) { keep_round(stage, piece); });
+                           at_work.for_batches(
+                               batches.general, kManifoldPoints,
+                               [&](BatchRange piece) { keep_general(stage, piece); });
+                       });
+}
+
+/// solve_blow() of a coloured island.
+template <class Threads>
+void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island,
+                         const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    const Blow blow = blow_of_island(simulation, step, island);
+    if (blow.fastest == 0) return;
+    const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
+    const ColouredStage& stage = coloured.stage();
+    const Effort effort = effort_of_large_blow(simulation, blow.fastest);
+    start_coloured(coloured, threads, lanes);
+    iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
+    const Range range = coloured.bodies();
+    const auto add = [&](Range some) { add_changes(stage, some); };
+    if (blow.returned == 0) {
+        threads.for_bodies(range, add);
+        return keep_coloured(coloured, threads);
+    }
+    const std::span<const BodyId> bodies(&step.coloured.bodies[range.begin],
+                                         range.end - range.begin);
+    threads.for_bodies(range, [&](Range some) { keep_blow_motion(stage, some); });
+    iterate_coloured(coloured, Pass::kRelax, effort, threads, lanes);
+    threads.for_bodies(range, add);
+    limit_restitution(simulation, step, bodies, blow);
+    keep_coloured(coloured, threads);
+}
+
+/// solve_island() of a coloured island.
+template <class Threads>
+void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
+    const ColouredStage& stage = coloured.stage();
+    start_coloured(coloured, threads, lanes);
+    step.residual[island] =
+        iterate_coloured(coloured, Pass::kSolve, effort_of_load(simulation), threads, lanes);
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }
 
@@ -126,21 +176,16 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
 template <class Threads>
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = LaneCount::kEight) {
-    const ColouredIsland coloured(simulation, step, island);
+    const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     if (simulation.settings.solver == Solver::kSoft) {
         threads.for_bodies(coloured.bodies(),
                            [&](Range bodies) { take_changes_back(stage, bodies); });
-        step.residual[island] = iterate_coloured(coloured, Pass::kRelax, threads, lanes);
+        step.residual[island] =
+            iterate_coloured(coloured, Pass::kRelax, effort_of_load(simulation), threads, lanes);
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
     }
-    coloured.for_colours(
-        threads, lanes, false, [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
-            at_work.for_batches(batches.round, 1,
-                                [&](BatchRange piece) { keep_round(stage, piece); });
-            at_work.for_batches(batches.general, kManifoldPoints,
-                                [&](BatchRange piece) { keep_general(stage, piece); });
-        });
+    keep_coloured(coloured, threads);
 }
 
 }  // namespace tesserae

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 
@@ -63,7 +64,7 @@ double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) 
     return change;
 }
 
-/// @return the largest change of a normal velocity [m/s] if it is the last sweep, else 0
+/// @return the largest change of a normal velocity [m/s] if it is measured, else 0
 template <NormalPass ContactRow::*kPass, bool kTurning>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
@@ -71,32 +72,37 @@ double sweep_rows(const Simulation& simulation, StepData& step, std::span<Contac
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
         const double change = solve_row<kPass, kTurning>(simulation, step, row);
-        if (sweep.last && change != 0)
+        if (sweep.measured && change != 0)
             residual = std::max(residual, std::abs(change) / row.relax.mass);
     }
     return residual;
 }
 
 template <bool kTurning>
-double iterate(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
-               Pass pass) {
-    double residual = 0;
-    for (int i = 0; i < simulation.settings.iterations; ++i) {
-        const Sweep sweep = sweep_of(simulation, pass, i);
-        residual = pass == Pass::kSolve
-                       ? sweep_rows<&ContactRow::solve, kTurning>(simulation, step, rows, sweep)
-                       : sweep_rows<&ContactRow::relax, kTurning>(simulation, step, rows, sweep);
-    }
-    return residual;
+double run_pass(const Simulation& simulation, StepData& step, std::span<ContactRow> rows, Pass pass,
+                const Effort& effort) {
+    return iterate(pass, effort, [&](Sweep sweep) {
+        return pass == Pass::kSolve
+                   ? sweep_rows<&ContactRow::solve, kTurning>(simulation, step, rows, sweep)
+                   : sweep_rows<&ContactRow::relax, kTurning>(simulation, step, rows, sweep);
+    });
 }
 
-/// The impulses that the rows start from, and all iterations.
-template <bool kTurning>
-double solve_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows) {
-    for (const ContactRow& row : rows)
-        apply_impulse<kTurning>(simulation, step, row,
-                                row.normal_impulse * row.normal + row.tangent_impulse);
-    return iterate<kTurning>(simulation, step, rows, Pass::kSolve);
+double run_pass(const Simulation& simulation, StepData& step, std::span<ContactRow> rows, Pass pass,
+                const Effort& effort) {
+    return simulation.needs.turning ? run_pass<true>(simulation, step, rows, pass, effort)
+                                    : run_pass<false>(simulation, step, rows, pass, effort);
+}
+
+/// The impulses that the rows start from.
+void apply_recalled(const Simulation& simulation, StepData& step, std::span<ContactRow> rows) {
+    for (const ContactRow& row : rows) {
+        const Vec4 impulse = row.normal_impulse * row.normal + row.tangent_impulse;
+        if (simulation.needs.turning)
+            apply_impulse<true>(simulation, step, row, impulse);
+        else
+            apply_impulse<false>(simulation, step, row, impulse);
+    }
 }
 
 std::span<ContactRow> rows_of(StepData& step, std::size_t island) {
@@ -109,10 +115,35 @@ std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t isl
     return {&step.islands.contacts[places.begin], places.end - places.begin};
 }
 
-void make_rows(const Simulation& simulation, StepData& step, std::size_t island) {
+void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
+    const bool made = step.has_rows[island];
     ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t index : contacts_of(step, island)) {
+        const Contact& contact = step.contacts[index];
+        if (!made) *row = make_row(simulation, step, contact);
+        const ContactImpulse start =
+            cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
+        start_row(simulation, step, contact, start, cause, *row++);
+    }
+    step.has_rows[island] = 1;
+}
+
+/// The movable bodies of an island that is not coloured, each once.
+std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
+                                  std::size_t island) {
+    BodyId* const first = step.blow_bodies.data() + 2 * step.islands.first_row[island];
+    BodyId* end = first;
+    for (const ContactRow& row : rows_of(step, island))
+        for (const BodyId id : {row.a, row.b})
+            if (simulation.type_of(id).movable) *end++ = id;
+    std::sort(first, end);
+    return {first, std::unique(first, end)};
+}
+
+void keep_hits(StepData& step, std::size_t island) {
+    const ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t contact : contacts_of(step, island))
-        *row++ = make_row(simulation, step, step.contacts[contact], step.impulses[contact]);
+        step.hit[contact] = (row++)->normal_impulse > 0;
 }
 
 void keep_impulses(StepData& step, std::size_t island) {
@@ -126,23 +157,43 @@ void keep_impulses(StepData& step, std::size_t island) {
 
 }  // namespace
 
+void solve_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.islands.is_coloured(island))
+        return solve_coloured_blow(simulation, step, island, OneThread{});
+    const Blow blow = blow_of_island(simulation, step, island);
+    if (blow.fastest == 0) return;
+    start_rows(simulation, step, island, Cause::kBlow);
+    const std::span<ContactRow> rows = rows_of(step, island);
+    const Effort effort = effort_of_blow(simulation, rows.size(), blow.fastest);
+    if (blow.returned == 0) {
+        run_pass(simulation, step, rows, Pass::kSolve, effort);
+        return keep_hits(step, island);
+    }
+    const std::span<const BodyId> bodies = bodies_of(simulation, step, island);
+    for (const BodyId id : bodies) step.blow_motion[id].before = motion_of(step, id);
+    run_pass(simulation, step, rows, Pass::kSolve, effort);
+    for (const BodyId id : bodies) step.blow_motion[id].compressed = motion_of(step, id);
+    run_pass(simulation, step, rows, Pass::kRelax, effort);
+    limit_restitution(simulation, step, bodies, blow);
+    keep_hits(step, island);
+}
+
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return solve_coloured_island(simulation, step, island, OneThread{});
-    make_rows(simulation, step, island);
-    step.residual[island] = simulation.needs.turning
-                                ? solve_rows<true>(simulation, step, rows_of(step, island))
-                                : solve_rows<false>(simulation, step, rows_of(step, island));
+    start_rows(simulation, step, island, Cause::kLoad);
+    const std::span<ContactRow> rows = rows_of(step, island);
+    apply_recalled(simulation, step, rows);
+    step.residual[island] =
+        run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation));
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return relax_coloured_island(simulation, step, island, OneThread{});
     if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] =
-            simulation.needs.turning
-                ? iterate<true>(simulation, step, rows_of(step, island), Pass::kRelax)
-                : iterate<false>(simulation, step, rows_of(step, island), Pass::kRelax);
+        step.residual[island] = run_pass(simulation, step, rows_of(step, island), Pass::kRelax,
+                                         effort_of_load(simulation));
     keep_impulses(step, island);
 }
 

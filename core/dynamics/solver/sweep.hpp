@@ -1,10 +1,32 @@
 #pragma once
 
+#include <algorithm>
+
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
 
 enum class Pass { kSolve, kRelax };
+
+/// How long a pass goes on: until a sweep's residual is at most `enough`, at most so many.
+struct Effort {
+    int sweeps = 0;
+    double enough = -1;  ///< [m/s]; -1: all sweeps
+};
+/// Of what rests: its impulses are started from in the next sub-step, which goes on with them.
+inline Effort effort_of_load(const Simulation& simulation) {
+    return {simulation.settings.iterations};
+}
+/// Of a blow: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
+/// @param fastest   see Blow
+inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts, double fastest) {
+    const auto sweeps = static_cast<int>(kBlowWork / contacts);
+    return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest};
+}
+inline Effort effort_of_large_blow(const Simulation& simulation, double fastest) {
+    return {simulation.settings.iterations, kLargeBlowResidual * fastest};
+}
 
 /// One iteration of a pass. Every other one goes through the island backward: a load at one end of
 /// it then reaches the other in one iteration (a tower of ten leans 10 times less). The last one of
@@ -12,11 +34,25 @@ enum class Pass { kSolve, kRelax };
 /// ground.
 struct Sweep {
     Pass pass;
-    bool backward, last;
+    bool backward, measured;  ///< measured: the residual is wanted
 };
-inline Sweep sweep_of(const Simulation& simulation, Pass pass, int iteration) {
-    const int left = simulation.settings.iterations - 1 - iteration;
-    return {pass, (left % 2 == 1) == (pass == Pass::kSolve), left == 0};
+inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
+    const int left = effort.sweeps - 1 - iteration;
+    const bool asks = effort.enough >= 0 && iteration % 4 == 3;
+    return {pass, (left % 2 == 1) == (pass == Pass::kSolve), left == 0 || asks};
+}
+
+/// @param sweep_all   does a Sweep and returns its residual [m/s]
+/// @return the residual of the last iteration [m/s]
+template <class SweepAll>
+double iterate(Pass pass, const Effort& effort, const SweepAll& sweep_all) {
+    double residual = 0;
+    for (int i = 0; i < effort.sweeps; ++i) {
+        const Sweep sweep = sweep_of(pass, effort, i);
+        residual = sweep_all(sweep);
+        if (sweep.measured && residual <= effort.enough) break;
+    }
+    return residual;
 }
 
 }  // namespace tesserae

@@ -25,6 +25,7 @@ void find_contacts(const Simulation& simulation, const StepData& step, Range pai
 
 void begin_contacts(StepData& step) {
     step.impulses.resize(step.contacts.size());
+    step.hit.assign(step.contacts.size(), 0);
     step.residual.clear();
 }
 

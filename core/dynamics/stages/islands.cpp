@@ -18,6 +18,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     sort_by_island(simulation, step);
     Islands& islands = step.islands;
     step.residual.resize(islands.size());
+    step.has_rows.assign(islands.size(), 0);
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
@@ -36,6 +37,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     }
     colouring_.end(simulation, step);
     step.rows.resize(rows);
+    if (simulation.needs.restitution) step.blow_bodies.resize(2 * std::size_t{rows});
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {

@@ -6,9 +6,10 @@
 namespace tesserae {
 
 const char* name_of(Stage stage) {
-    constexpr const char* kNames[] = {"advance_first_half",   "find_pairs",    "find_contacts",
-                                      "integrate_velocities", "build_islands", "solve_islands",
-                                      "advance_second_half",  "relax_islands", "finish_step"};
+    constexpr const char* kNames[] = {
+        "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
+        "solve_blows",        "integrate_velocities", "solve_islands", "advance_second_half",
+        "relax_islands",      "finish_step"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -26,6 +27,11 @@ void Schedule::find_pairs(const Simulation& simulation, StepData& step) {
 
 void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
     test_all_pairs(simulation, step);
+}
+
+void Schedule::solve_blows(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        solve_blow(simulation, step, island);
 }
 
 void Schedule::solve_islands(const Simulation& simulation, StepData& step) {

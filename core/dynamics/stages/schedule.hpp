@@ -11,8 +11,9 @@ enum class Stage {
     kAdvanceFirstHalf,
     kFindPairs,
     kFindContacts,
-    kIntegrateVelocities,
     kBuildIslands,
+    kSolveBlows,
+    kIntegrateVelocities,
     kSolveIslands,
     kAdvanceSecondHalf,
     kRelaxIslands,
@@ -50,7 +51,8 @@ class Schedule {
     /// The same from bounds that have not changed, after bodies woke.
     virtual void choose_pairs(const Simulation& simulation, StepData& step);
 
-    /// solve_island() of every island, and relax_island().
+    /// solve_blow() of every island, solve_island() and relax_island().
+    virtual void solve_blows(const Simulation& simulation, StepData& step);
     virtual void solve_islands(const Simulation& simulation, StepData& step);
     virtual void relax_islands(const Simulation& simulation, StepData& step);
 };

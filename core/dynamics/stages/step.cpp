@@ -72,6 +72,7 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.velocity.resize(count);
     step.bounds.resize(count);
     if (simulation.needs.uneven_inertia) step.inverse_inertia.resize(count);
+    if (simulation.needs.restitution) step.blow_motion.resize(count);
     if (simulation.needs.turning) {
         step.rotor.resize(count);
         step.angular_velocity.resize(count);
@@ -135,7 +136,7 @@ void sum_contacts(StepData& step, Range contacts) {
         ContactSums sums;
         for (std::size_t i = begin; i < std::min(begin + kReportPiece, contacts.end); ++i) {
             const double separation = step.contacts[i].separation;
-            if (separation > 0 && !(step.impulses[i].normal > 0)) continue;
+            if (separation > 0 && !(step.impulses[i].normal > 0) && !step.hit[i]) continue;
             const double overlap = std::max(0.0, -separation);
             ++sums.contacts;
             sums.sum += overlap;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <tuple>
 #include <vector>
@@ -88,6 +89,27 @@ struct ContactRow {
     BodyId a = 0, b = 0;
 };
 
+/// How a body moves.
+struct BodyMotion {
+    Vec4 velocity = Vec4::Zero();
+    Bivector angular_velocity;
+
+    friend BodyMotion operator+(const BodyMotion& a, const BodyMotion& b) {
+        return {a.velocity + b.velocity, a.angular_velocity + b.angular_velocity};
+    }
+    friend BodyMotion operator-(const BodyMotion& a, const BodyMotion& b) {
+        return {a.velocity - b.velocity, a.angular_velocity - b.angular_velocity};
+    }
+    friend BodyMotion operator*(double k, const BodyMotion& m) {
+        return {k * m.velocity, k * m.angular_velocity};
+    }
+};
+
+/// Of a body before a blow and at its greatest compression.
+struct BlowMotion {
+    BodyMotion before, compressed;
+};
+
 /// The bodies as they were after the last finished step, and what is worked out from them once.
 struct Simulation {
     Bodies bodies;
@@ -121,6 +143,7 @@ struct StepData {
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
+    std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
     std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
     std::vector<double> residual;          ///< of every island [m/s]
@@ -130,6 +153,9 @@ struct StepData {
     /// Made and used within one stage; here so that their memory is kept.
     std::vector<ContactImpulse> merged_impulses;
     std::vector<BodyId> lowest_of_island, next_asleep;
+    std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
+    std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, likewise
+    std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
 };
 
 /// Contacts and their impulses are in ascending order of this.
@@ -158,6 +184,10 @@ inline Bivector angular_response(const Simulation& simulation, const StepData& s
     sum += impulse.yw * map.col(4);
     sum += impulse.zw * map.col(5);
     return {sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]};
+}
+
+inline BodyMotion motion_of(const StepData& step, BodyId id) {
+    return {step.velocity[id], step.angular_velocity[id]};
 }
 
 inline bool is_asleep(const StepData& step, BodyId id) {

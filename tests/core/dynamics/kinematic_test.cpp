@@ -69,16 +69,15 @@ TEST(ClosingWall, PushesAtItsOwnSpeedOrThrowsAtTwiceThat) {
             const Vec4 v{0, 0, 0, wall_speed};
             add(bodies, kinematic(box_type({9, 9, 9, 0.2}), 0.3), {0, 0, 0, -1.1}, v);
             add(bodies, with_surface(type, 0.3, restitution));
-            // The box's eight contacts share one impulse: 100 iterations find it to rounding.
-            PhysicsSettings settings = without_gravity();
-            settings.iterations = 100;
-            World world(bodies, settings);
+            World world(bodies, without_gravity());
             for (int i = 0; i < 240; ++i) world.step(kStep);
             // The wall is 0.5 m from the body: it hits at 1/6 s.
             const double speed = (1 + restitution) * wall_speed;
             const Bodies& after = world.bodies();
-            EXPECT_LT((after.velocity[1] - Vec4(0, 0, 0, speed)).norm(), 1e-14) << restitution;
-            EXPECT_LT(norm(after.angular_velocity[1]), 1e-14);
+            // The last sweep of the blow changed a normal velocity by so much at most.
+            const double left = 10 * kBlowResidual * wall_speed;
+            EXPECT_LT((after.velocity[1] - Vec4(0, 0, 0, speed)).norm(), left) << restitution;
+            EXPECT_LT(norm(after.angular_velocity[1]), left);
             // The velocity changes in the middle of a step, not at the moment of the hit.
             EXPECT_NEAR(after.position[1][3], speed * 5 / 6, speed * kStep) << restitution;
             EXPECT_EQ(after.velocity[0], v);

@@ -19,6 +19,7 @@ StepData random_contacts() {
         ContactImpulse impulse;
         impulse.normal = i % 2 == 0 ? 1 : 0;
         step.impulses.push_back(impulse);
+        step.hit.push_back(random() % 5 == 0);
     }
     return step;
 }
@@ -39,7 +40,7 @@ TEST(StepReport, CountsAndAveragesWhatTouchesOrPushes) {
     long double sum = 0;
     for (std::size_t i = 0; i < step.contacts.size(); ++i) {
         const double s = step.contacts[i].separation;
-        if (s > 0 && step.impulses[i].normal == 0) continue;
+        if (s > 0 && step.impulses[i].normal == 0 && !step.hit[i]) continue;
         ++count;
         if (s < 0) deepest = std::max(deepest, -s), sum += -s;
     }

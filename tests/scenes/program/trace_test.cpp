@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kSteps = 12, kSubsteps = 2;
 const std::set<std::string> kStagesOfSubstep = {
-    "advance_first_half", "find_pairs",    "find_contacts",       "integrate_velocities",
-    "build_islands",      "solve_islands", "advance_second_half", "relax_islands"};
+    "advance_first_half",   "find_pairs",    "find_contacts",       "build_islands", "solve_blows",
+    "integrate_velocities", "solve_islands", "advance_second_half", "relax_islands"};
 
 std::vector<std::string> arguments(const Folder& folder, const std::string& trace) {
     return {"simulate",
@@ -54,7 +54,7 @@ TEST(ProgramTrace, HasASpanForEveryStageAndMessagesOfIslandsWithinTheirs) {
         const double begin = event["ts"], duration = event["dur"];
         EXPECT_GE(begin, 0);
         EXPECT_GE(duration, 0);
-        if (name == "solve_islands" || name == "relax_islands")
+        if (name == "solve_blows" || name == "solve_islands" || name == "relax_islands")
             solving.push_back({begin, begin + duration});
         if (name == parallel::kIslandsSpan) messages.push_back({begin, begin + duration});
     }

@@ -74,6 +74,7 @@ Unsolved random_island(Solver solver, double friction, bool spheres_only) {
                 world.step.impulses.push_back({a, b, i,
                                                std::max(0.0, random_vector(random, 0.01)[0]),
                                                random_vector(random, 0.01)});
+                world.step.hit.push_back(0);
             }
         }
     IslandBuilder(1).build(world.simulation, world.step);
@@ -94,6 +95,7 @@ TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 Unsolved eight = one;
                 const auto work = [](Unsolved& world, LaneCount lanes) {
                     const Simulation& simulation = world.simulation;
+                    solve_coloured_blow(simulation, world.step, 0, OneThread{}, lanes);
                     solve_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
                     advance_second_half(simulation, world.step, {0, simulation.bodies.size()});
                     relax_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
@@ -103,6 +105,8 @@ TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 EXPECT_TRUE(same_bits(one.step.velocity, eight.step.velocity));
                 EXPECT_TRUE(same_bits(one.step.angular_velocity, eight.step.angular_velocity));
                 EXPECT_EQ(one.step.residual, eight.step.residual);
+                EXPECT_EQ(one.step.hit, eight.step.hit);
+                EXPECT_GT(std::count(one.step.hit.begin(), one.step.hit.end(), 1), 50);
                 EXPECT_GT(one.step.residual[0], 0);
                 double normal = 0, tangent = 0;
                 for (std::size_t i = 0; i < one.step.impulses.size(); ++i) {
@@ -157,10 +161,10 @@ std::vector<OnePair> pairs_of_all_kinds() {
 
 TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
     Generator random(5);
-    std::size_t most_points = 0;
+    std::size_t most_points = 0, hits = 0;
     for (const OnePair& pair : pairs_of_all_kinds())
-        for (int round = 0; round < 40; ++round) {
-            const bool soft = round % 2 == 0;
+        for (int round = 0; round < 80; ++round) {
+            const bool soft = round % 2 == 0, hit = round >= 40;
             const double friction = round % 4 < 2 ? 0.4 : round % 8 < 4 ? 0 : 100;
             Bodies bodies;
             for (const BodyType& shape : {pair.a, pair.b}) {
@@ -171,8 +175,8 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                 Vec4 velocity(0, 0, 0, 0);
                 Bivector omega;
                 if (is_bounded(type.shape)) {
-                    velocity = random_vector(random, 0.3);
-                    omega = 0.2 * random_bivector(random);
+                    velocity = random_vector(random, hit ? 0.3 : 0.03);
+                    omega = (hit ? 0.2 : 0.02) * random_bivector(random);
                 }
                 add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0), velocity, omega);
             }
@@ -185,12 +189,15 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
             ASSERT_TRUE(coloured.islands.is_coloured(0));
             most_points = std::max(most_points, plain.contacts.size());
             // Speeds of 1 m/s are rounded by 6e-8. Each of up to eight points hands that on to the
-            // others, ten times as large where a corner yields that much more than the centre.
-            EXPECT_LT(difference(plain, coloured), 1e-5)
+            // others, ten times as large where a corner yields that much more than the centre. A
+            // blow ends in float as soon as a sweep changes it by a thousandth of its speed.
+            hits += std::count(coloured.hit.begin(), coloured.hit.end(), 1);
+            EXPECT_LT(difference(plain, coloured), hit ? 0.1 : 1e-5)
                 << "pair of shapes " << bodies.types[0].shape.index() << " and "
                 << bodies.types[1].shape.index() << ", round " << round;
         }
     EXPECT_EQ(most_points, 8u);
+    EXPECT_GT(hits, 100u);
 }
 
 /// A heap of spheres, boxes and capsules about to touch, far from rest, as one island.
@@ -248,8 +255,7 @@ TEST(ColouredSolver, WorksAsWellFarAwayAndAtHighSpeed) {
         // Targets are 1/h times overlaps that are 1e-11 m off: 2.4e-9 m/s. These flip roundings of
         // floats, 6e-8 of 1 m/s, which the iterations hand on.
         EXPECT_LT(difference(here, there), 1e-5);
-        const auto carries = [](const ContactImpulse& impulse) { return impulse.normal > 0.01; };
-        EXPECT_GT(std::count_if(here.impulses.begin(), here.impulses.end(), carries), 50);
+        EXPECT_GT(std::count(here.hit.begin(), here.hit.end(), 1), 50);
     }
 }
 

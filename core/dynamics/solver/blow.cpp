@@ -1,0 +1,67 @@
+#include "core/dynamics/solver/blow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tesserae {
+namespace {
+
+/// The product that of a motion with itself is twice its kinetic energy.
+double product(const Simulation& simulation, const StepData& step, BodyId id, const BodyMotion& a,
+               const BodyMotion& b) {
+    const TypeProperties& type = simulation.type_of(id);
+    double sum = type.inverse_mass > 0 ? type.mass * a.velocity.dot(b.velocity) : 0;
+    if (simulation.needs.turning && !(type.inverse_inertia == Bivector{}))
+        sum += dot(angular_momentum(type, step.rotor[id], a.angular_velocity), b.angular_velocity);
+    return sum;
+}
+
+}  // namespace
+
+bool has_blow(const Simulation& simulation, const StepData& step, Range contacts) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
+        if (blow_of(simulation, step, step.contacts[i]).fastest > 0) return true;
+    return false;
+}
+
+Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island) {
+    Blow all;
+    const Range places = step.islands.places(island);
+    for (std::size_t i = places.begin; i < places.end; ++i) {
+        const Contact& contact = step.contacts[step.islands.contacts[i]];
+        const Blow blow = blow_of(simulation, step, contact);
+        all.fastest = std::max(all.fastest, blow.fastest);
+        all.returned = std::max(all.returned, blow.returned);
+        all.driven |= is_driven(simulation, contact.a) || is_driven(simulation, contact.b);
+    }
+    return all;
+}
+
+void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
+                       const Blow& blow) {
+    double taken_squared = 0, given_squared = 0, lost = 0, cross = 0;
+    for (const BodyId id : bodies) {
+        const BlowMotion& m = step.blow_motion[id];
+        const BodyMotion taken = m.before - m.compressed;
+        const BodyMotion given = motion_of(step, id) - m.compressed;
+        taken_squared += product(simulation, step, id, taken, taken);
+        given_squared += product(simulation, step, id, given, given);
+        lost += product(simulation, step, id, taken, m.before + m.compressed);
+        cross += product(simulation, step, id, m.compressed, given);
+    }
+    // The part x of what is given: x^2 given^2 + 2 x cross <= returned^2 taken^2, twice energies.
+    if (blow.driven || cross < 0) cross = 0;
+    const double taken = blow.driven ? taken_squared : std::clamp(lost, 0.0, taken_squared);
+    const double most = blow.returned * blow.returned * taken;
+    if (given_squared + 2 * cross <= most) return;
+    const double root = std::sqrt(cross * cross + given_squared * most);
+    const double part = most > 0 ? most / (cross + root) : 0;
+    for (const BodyId id : bodies) {
+        const BodyMotion& compressed = step.blow_motion[id].compressed;
+        const BodyMotion motion = compressed + part * (motion_of(step, id) - compressed);
+        step.velocity[id] = motion.velocity;
+        if (simulation.needs.turning) step.angular_velocity[id] = motion.angular_velocity;
+    }
+}
+
+}  // namespace tesserae

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "core/dynamics/solver/targets.hpp"
+
+namespace tesserae {
+
+/// Whether any of the contacts is one. Needs the velocities before gravity, as all of this.
+bool has_blow(const Simulation& simulation, const StepData& step, Range contacts);
+
+/// The largest of its contacts' numbers.
+Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island);
+
+/// Cuts what restitution gave to all bodies of an island alike, so that no blow adds energy:
+/// needs step.blow_motion, and the bodies' motion after restitution.
+///
+/// In the norm of the kinetic energy it may change the motion by `returned` times as much as the
+/// compression did. Compression without friction is the projection to the motions at which no
+/// bodies meet, so that the square of its change is twice the energy that it takes, and a central
+/// blow is not cut; with friction it takes more. Work that friction would do while restitution
+/// acts counts as given (bodies that are driven do work of their own: there it does not).
+void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
+                       const Blow& blow);
+
+}  // namespace tesserae

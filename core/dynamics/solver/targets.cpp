@@ -1,0 +1,124 @@
+#include "core/dynamics/solver/targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/dynamics/constants.hpp"
+
+namespace tesserae {
+namespace {
+
+/// What decides whether a contact is a blow, and what follows.
+struct Approach {
+    double e;        ///< coefficient of restitution
+    double slowest;  ///< speed above which it is one [m/s]
+    double g;        ///< at which gravity accelerates the bodies towards each other [m/s^2]
+    double through;  ///< how deep they may overlap until the next sub-step sees it as one [m]
+};
+
+Approach approach_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
+    const TypeProperties& a = simulation.type_of(contact.a);
+    const TypeProperties& b = simulation.type_of(contact.b);
+    const Vec4& gravity = simulation.settings.gravity;
+    const double half_size = std::min(a.slop, b.slop) / kSlop;
+    Approach approach;
+    approach.e = std::max(a.restitution, b.restitution);
+    approach.slowest = a.falls || b.falls ? kRestitutionKicks * step.h * gravity.norm() : 0;
+    if (approach.e == 0) approach.slowest = std::max(approach.slowest, kStill * half_size);
+    approach.g = (a.falls - b.falls) * contact.normal.dot(gravity);
+    approach.through = 0.5 * half_size;
+    return approach;
+}
+
+/// The velocity along the normal that leaves the surface at e times the speed v with which the
+/// bodies meet there, v^2 = v0^2 + 2 g s0, when they accelerate towards each other at g, approached
+/// at v0 with the gap s0 at the start of the sub-step, and are s apart in its middle. The velocity
+/// w and the gap s + h w/2 at the end of the sub-step then have the energy of that rebound:
+/// w^2 + 2 g (s + h w/2) = e^2 v^2.
+double rebound_velocity(double e, double v0, double g, double s, double h) {
+    const double s0 = s + 0.5 * h * v0;
+    const double at_surface = std::max(0.0, v0 * v0 + 2 * g * s0);
+    const double half = 0.5 * g * h;
+    return std::sqrt(std::max(0.0, half * half + e * e * at_surface - 2 * g * s)) - half;
+}
+
+/// What keeps bodies apart or takes them apart when they are s from touching.
+ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact) {
+    const double s = contact.separation;
+    const double slop =
+        std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
+    ContactTargets targets;
+    if (s > -slop) {
+        targets.solve = targets.relax = s > 0 ? -s / h : 0;
+        return targets;
+    }
+    const double depth = -(s + slop);
+    const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
+    if (simulation.settings.solver == Solver::kImpulse) {
+        targets.solve = std::min(fastest, kBiasPart / h * depth);
+        return targets;
+    }
+    // A spring of angular frequency w, integrated implicitly. Its velocity acts on the second half
+    // of the sub-step only, so that it has to be twice as large.
+    constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
+    constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
+    targets.solve = std::min(fastest, 2 * kAngle / kSum / h * depth);
+    targets.keep = kStiff / (1 + kStiff);
+    return targets;
+}
+
+/// Bodies that bounce and do not meet in this sub-step by themselves: stopping them at each other's
+/// surface if another contact drives them there would lose that energy. They may overlap and
+/// bounce in the next sub-step.
+ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
+    ContactTargets targets;
+    targets.solve = targets.relax = -(s + approach.through) / h;
+    return targets;
+}
+
+ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
+                               const Approach& approach, double v0) {
+    const double s = contact.separation, h = step.h, g = approach.g;
+    ContactTargets targets;
+    targets.solve = targets.relax = s > 0 ? -s / h : 0;
+    if (approach.e == 0) return targets;
+    if (s > h * (v0 + h * g)) return targets_of_driven(approach, s, h);
+    if (!(v0 > approach.slowest)) return targets;
+    targets.solve = 0;
+    targets.relax = std::max(0.0, rebound_velocity(approach.e, v0, g, s, h) + h * g);
+    return targets;
+}
+
+}  // namespace
+
+ContactTargets targets_of(const Simulation& simulation, const StepData& step,
+                          const Contact& contact, double normal_velocity, Cause cause) {
+    if (cause == Cause::kBlow)
+        return targets_of_blow(step, contact, approach_of(simulation, step, contact),
+                               -normal_velocity);
+    if (simulation.needs.restitution && contact.separation > 0) {
+        const Approach approach = approach_of(simulation, step, contact);
+        const double s = contact.separation, v1 = -normal_velocity, v0 = v1 - step.h * approach.g;
+        if (approach.e > 0 && (s > step.h * v1 || v0 > approach.slowest))
+            return targets_of_driven(approach, s, step.h);
+    }
+    return targets_of_overlap(simulation, step.h, contact);
+}
+
+Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
+    const Vec4 r_a = contact.point - step.position[contact.a];
+    const Vec4 r_b = contact.point - step.position[contact.b];
+    const double v0 = -contact.normal.dot(
+        relative_velocity(step, contact.a, r_a, contact.b, r_b, simulation.needs.turning));
+    if (!(v0 > 0)) return {};
+    const Approach approach = approach_of(simulation, step, contact);
+    const bool meets = contact.separation <= step.h * (v0 + step.h * approach.g);
+    if (!meets || !(v0 > approach.slowest)) return {};
+    Blow blow;
+    blow.fastest = v0;
+    blow.returned = std::max(0.0, targets_of_blow(step, contact, approach, v0).relax) / v0;
+    return blow;
+}
+
+}  // namespace tesserae

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// What impulses are for. Those of a blow end in the sub-step in which they act; those of a load
+/// act again in the next one, which starts from them.
+enum class Cause {
+    kBlow,  ///< bodies hit each other; before gravity acts
+    kLoad,  ///< they rest on each other; after it
+};
+
+/// What a row aims at, along the normal; see NormalPass. Of a blow, `solve` is the compression and
+/// `relax` the restitution.
+struct ContactTargets {
+    double keep = 1;   ///< of the solve pass
+    double solve = 0;  ///< [m/s]
+    double relax = 0;  ///< [m/s]
+};
+/// @param normal_velocity   at which the bodies part, before the first impulse of the cause [m/s]
+ContactTargets targets_of(const Simulation& simulation, const StepData& step,
+                          const Contact& contact, double normal_velocity, Cause cause);
+
+/// The velocity of body b relative to body a at the contact point [m/s].
+/// @param turning   see Needs
+inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, BodyId b,
+                              const Vec4& r_b, bool turning) {
+    if (!turning) return step.velocity[b] - step.velocity[a];
+    return step.velocity[b] + velocity_at(step.angular_velocity[b], r_b) - step.velocity[a] -
+           velocity_at(step.angular_velocity[a], r_a);
+}
+
+/// How hard an island's bodies hit each other.
+struct Blow {
+    double fastest = 0;   ///< speed at which they meet [m/s]; 0: none does
+    double returned = 0;  ///< the greatest part of such a speed that restitution gives back
+    bool driven = false;  ///< some body moves at a velocity of its own; see is_driven()
+};
+/// Of one contact, but for `driven`. Needs the velocities before gravity.
+Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact);
+
+}  // namespace tesserae
