@@ -34,6 +34,10 @@ const StepMemory& Trial::memory() const {
     return std::visit([](const auto& w) -> const StepMemory& { return w.memory(); }, world_);
 }
 
+void Trial::observe(StageObserver* observer) {
+    std::visit([&](auto& w) { w.observe(observer); }, world_);
+}
+
 StepReport Trial::step() {
     return std::visit([&](auto& w) { return w.step(1 / settings_.steps_per_second); }, world_);
 }

@@ -44,6 +44,9 @@ class Trial {
     /// The same, with a call of after(time, report) behind each step.
     void run(const std::function<void(double, const StepReport&)>& after);
 
+    /// As World::observe().
+    void observe(StageObserver* observer);
+
     /// Processor time of all steps [s].
     double seconds() const { return seconds_; }
 

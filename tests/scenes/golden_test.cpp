@@ -56,9 +56,9 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "7b1a7a19ba7f4e3b2a5d9d9c2a4b1469");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "4afdb24b213f3ce550d2fb45c3c15571");
     EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "b67c6412cbe136e6085cdda5b9ee51cb");
-    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "2e50d60b380ad891bafef32b3896c1bf");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "8fcdebb80834b9544f4a9864246474c3");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
@@ -117,8 +117,8 @@ TEST_F(Golden, AFilmIsAsEver) {
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
-              "1dbb424652188252d5703375a7b91560");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "a1d2d91e221cfc8e06c488383bb2095b");
+              "62827d476bfa216d185dac39ddaadc02");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "ee374ed7a5383074e72ee80940269613");
 }
 
 }  // namespace

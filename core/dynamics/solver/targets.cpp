@@ -27,7 +27,7 @@ Approach approach_of(const Simulation& simulation, const StepData& step, const C
     approach.slowest = a.falls || b.falls ? kRestitutionKicks * step.h * gravity.norm() : 0;
     if (approach.e == 0) approach.slowest = std::max(approach.slowest, kStill * half_size);
     approach.g = (a.falls - b.falls) * contact.normal.dot(gravity);
-    approach.through = 0.5 * half_size;
+    approach.through = 0.5 * half_size * approach.e * approach.e;  // as is the energy at stake
     return approach;
 }
 
@@ -68,9 +68,9 @@ ContactTargets targets_of_overlap(const Simulation& simulation, double h, const 
     return targets;
 }
 
-/// Bodies that bounce and do not meet in this sub-step by themselves: stopping them at each other's
-/// surface if another contact drives them there would lose that energy. They may overlap and
-/// bounce in the next sub-step.
+/// Bodies that bounce and do not hit each other by themselves: stopping them at each other's
+/// surface if another blow drives them there would lose that energy. They may overlap and bounce in
+/// the next sub-step, so that blows go through a row of bodies one after the other.
 ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
     ContactTargets targets;
     targets.solve = targets.relax = -(s + approach.through) / h;
@@ -83,8 +83,8 @@ ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
     ContactTargets targets;
     targets.solve = targets.relax = s > 0 ? -s / h : 0;
     if (approach.e == 0) return targets;
-    if (s > h * (v0 + h * g)) return targets_of_driven(approach, s, h);
-    if (!(v0 > approach.slowest)) return targets;
+    if (s > h * (v0 + h * g) || !(v0 > approach.slowest))
+        return s > -approach.through ? targets_of_driven(approach, s, h) : targets;
     targets.solve = 0;
     targets.relax = std::max(0.0, rebound_velocity(approach.e, v0, g, s, h) + h * g);
     return targets;
@@ -97,10 +97,11 @@ ContactTargets targets_of(const Simulation& simulation, const StepData& step,
     if (cause == Cause::kBlow)
         return targets_of_blow(step, contact, approach_of(simulation, step, contact),
                                -normal_velocity);
-    if (simulation.needs.restitution && contact.separation > 0) {
+    if (simulation.needs.restitution) {
         const Approach approach = approach_of(simulation, step, contact);
         const double s = contact.separation, v1 = -normal_velocity, v0 = v1 - step.h * approach.g;
-        if (approach.e > 0 && (s > step.h * v1 || v0 > approach.slowest))
+        const bool apart = s > 0 && s > step.h * v1;
+        if (approach.e > 0 && s > -approach.through && (apart || v0 > approach.slowest))
             return targets_of_driven(approach, s, step.h);
     }
     return targets_of_overlap(simulation, step.h, contact);
