@@ -166,6 +166,68 @@ ExtremeCase bouncing() {
             }};
 }
 
+/// The last body hits the others. How fast it comes back, and how much energy there is at most.
+/// @param towards   unit, the way it comes
+ExtremeCase blow(std::string name, const Bodies& bodies, const Vec4& towards, bool falls) {
+    return {std::move(name), [=](PhysicsSettings settings) -> Measurements {
+                if (!falls) settings.gravity.setZero();
+                World world(bodies, settings);
+                const auto energy = [&] {
+                    const Bodies& now = world.bodies();
+                    double sum = kinetic_energy(now);
+                    for (BodyId id = 0; id < now.size(); ++id)
+                        if (is_bounded(now.type_of(id).shape))
+                            sum -= now.type_of(id).mass * settings.gravity.dot(now.position[id]);
+                    return sum;
+                };
+                const double start = energy();
+                double in = 0, back = 0, most = start;
+                for (int i = 0; i < 480; ++i) {
+                    world.step(1.0 / 240);
+                    const double along = towards.dot(world.bodies().velocity.back());
+                    in = std::max(in, along), back = std::max(back, -along);
+                    most = std::max(most, energy());
+                }
+                return {{"comes back at", "of its speed", back / in},
+                        {"largest gain of energy", "relative", most / start - 1}};
+            }};
+}
+
+/// Balls of 1 kg in a row from x = 0 on, and one that comes at 10 m/s.
+Bodies row_of_balls(int count, double mass, double restitution, bool wall) {
+    Bodies bodies;
+    if (wall) add(bodies, plane_type(-Vec4::UnitX(), 0.5 - count, 0, restitution), Vec4::Zero());
+    for (int i = 0; i < count; ++i)
+        add(bodies, sphere_type(0.5, 1, 0, restitution), {static_cast<double>(i), 0, 0, 0});
+    add(bodies, sphere_type(0.5, mass, 0, restitution), {-4, 0, 0, 0}, {10, 0, 0, 0});
+    return bodies;
+}
+
+/// Restitution 0 but for the last three.
+std::vector<ExtremeCase> blows() {
+    std::vector<ExtremeCase> cases;
+    for (const double mass : {10.0, 100.0}) {
+        Bodies boxes = tower({1, mass});
+        boxes.position.back()[1] += 2;
+        cases.push_back(blow(fmt::format("box of {:g} kg falls 2 m onto one of 1 kg", mass), boxes,
+                             -Vec4::UnitY(), true));
+    }
+    for (const double mass : {20.0, 100.0, 1000.0})
+        cases.push_back(blow(fmt::format("ball of {:g} kg hits six of 1 kg before a wall", mass),
+                             row_of_balls(6, mass, 0, true), Vec4::UnitX(), false));
+    cases.push_back(blow("ball of 100 kg hits one of 1 kg before a wall, restitution 0.9",
+                         row_of_balls(1, 100, 0.9, true), Vec4::UnitX(), false));
+    cases.push_back(blow("ball hits four others, restitution 1", row_of_balls(4, 1, 1, false),
+                         Vec4::UnitX(), false));
+    Bodies tumbling;
+    add(tumbling, plane_type(Vec4::UnitY(), 0, 0.5, 0.9), Vec4::Zero());
+    BodyType box = box_type({1, 0.6, 0.8, 0.5}, 2);
+    box.restitution = 0.9;
+    add(tumbling, box, {0, 2, 0, 0}, {3, 0, 1, 0}, {8, -3, 2, 5, -4, 1});
+    cases.push_back(blow("tumbling box, restitution 0.9", tumbling, -Vec4::UnitY(), true));
+    return cases;
+}
+
 /// 10 x 10 x 10 x 10 spheres between walls, put down touching, 60 s.
 ExtremeCase resting_spheres() {
     return {"10^4 spheres at rest for 60 s", [](PhysicsSettings settings) {
@@ -218,6 +280,7 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(staying("8 spheres deep in each other, 4 s", deep_spheres(), 1, 4));
     cases.push_back(staying("capsule 10^4 times as long as wide, 4 s", long_capsule(), 0.02, 4));
     for (ExtremeCase& rotation : rotations()) cases.push_back(std::move(rotation));
+    for (ExtremeCase& hit : blows()) cases.push_back(std::move(hit));
     cases.push_back(bouncing());
     if (with_long) cases.push_back(resting_spheres());
     return cases;
