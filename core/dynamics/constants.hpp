@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 // What was chosen, not derived, of how contacts are solved: each with its unit, its usual value and
@@ -26,7 +27,8 @@ constexpr double kLargestPush = 4;
 
 /// Approach speed above which bodies hit each other, as a multiple of what gravity adds in a
 /// sub-step: slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle;
-/// higher, bouncing ends too soon. Where there is no gravity every approach bounces.
+/// higher, bouncing ends too soon. Without gravity every approach bounces, and at restitution 0 one
+/// is a blow from kStill on.
 constexpr double kRestitutionKicks = 4;
 
 /// A blow of a small island is solved until no normal velocity changes by more than this part of

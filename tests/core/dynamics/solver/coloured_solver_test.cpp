@@ -190,9 +190,14 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
             most_points = std::max(most_points, plain.contacts.size());
             // Speeds of 1 m/s are rounded by 6e-8. Each of up to eight points hands that on to the
             // others, ten times as large where a corner yields that much more than the centre. A
-            // blow ends in float as soon as a sweep changes it by a thousandth of its speed.
+            // blow at several points ends in float as soon as a sweep changes it by 3e-4 m/s, a
+            // thousandth of its speed, of which there may be some ten left. With friction the
+            // solution is not one alone (measured: 0.07 m/s).
             hits += std::count(coloured.hit.begin(), coloured.hit.end(), 1);
-            EXPECT_LT(difference(plain, coloured), hit ? 0.1 : 1e-5)
+            const double most = !hit || plain.contacts.size() == 1 ? 1e-5
+                                : friction == 0                    ? 4e-3
+                                                                   : 0.1;
+            EXPECT_LT(difference(plain, coloured), most)
                 << "pair of shapes " << bodies.types[0].shape.index() << " and "
                 << bodies.types[1].shape.index() << ", round " << round;
         }
