@@ -20,6 +20,18 @@ concept HasContacts = requires(const A& a, const B& b, const Pose& pose, double 
     contacts_between(a, pose, b, pose, margin, out);
 };
 
+template <class A, class B>
+concept HasContactsOverFace = requires(const A& a, const B& b, const Pose& pose, const Vec4& normal,
+                                       double margin, PairContacts& out) {
+    contacts_over_face(a, pose, b, pose, true, normal, margin, out);
+};
+
+template <class A, class B>
+concept NamesFeaturesOverCell = requires(const A& a, const B& b, const Vec4& normal,
+                                         std::uint32_t feature) {
+    feature_over_cell(a, b, true, normal, feature);
+};
+
 }  // namespace
 
 void find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
@@ -38,6 +50,34 @@ void find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
                 static_assert(!A::kBounded && !B::kBounded, "a pair without contacts_between()");
                 TSR_ASSERT(is_bounded(shape_a) || is_bounded(shape_b));
             }
+        },
+        shape_a, shape_b);
+}
+
+void find_contacts_over_face(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
+                             const Shape& shape_b, const Pose& pose_b, bool face_of_b,
+                             const Vec4& outward, double margin, std::vector<Contact>& list) {
+    std::visit(
+        [&]<class A, class B>(const A& first, const B& second) {
+            if constexpr (HasContactsOverFace<A, B>) {
+                PairContacts out{a, b, false, list};
+                contacts_over_face(first, pose_a, second, pose_b, face_of_b, outward, margin, out);
+            } else if constexpr (HasContactsOverFace<B, A>) {
+                PairContacts out{a, b, true, list};
+                contacts_over_face(second, pose_b, first, pose_a, !face_of_b, outward, margin, out);
+            }
+        },
+        shape_a, shape_b);
+}
+
+std::uint32_t feature_over_face(const Shape& shape_a, const Shape& shape_b, bool face_of_b,
+                                const Vec4& outward, std::uint32_t on_plane) {
+    return std::visit(
+        [&]<class A, class B>(const A& a, const B& b) {
+            if constexpr (NamesFeaturesOverCell<A, B>)
+                return feature_over_cell(a, b, face_of_b, outward, on_plane);
+            else
+                return on_plane;
         },
         shape_a, shape_b);
 }

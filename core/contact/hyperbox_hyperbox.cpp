@@ -10,18 +10,20 @@ namespace {
 
 constexpr std::uint32_t kFaces = 81;
 
+void find_under_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double margin,
+                     BoxPoints& points) {
+    if (!of_b) return clip_cell(pair, axis, margin, points);
+    const BoxPair other = swapped(pair);
+    clip_cell(other, axis, margin, points);
+    points.swap_boxes(other);
+}
+
 /// The vertices under one cell; false if they do not reach the pair's separation, so that another
 /// feature touches first.
 bool meet_at_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double separation,
                   double margin, BoxPoints& points) {
     if (axis.gap < separation - cell_bias(pair)) return false;
-    if (of_b) {
-        const BoxPair other = swapped(pair);
-        clip_cell(other, axis, margin, points);
-        points.swap_boxes(other);
-    } else {
-        clip_cell(pair, axis, margin, points);
-    }
+    find_under_cell(pair, axis, of_b, margin, points);
     return points.least_separation() <= separation + cell_bias(pair);
 }
 
@@ -104,6 +106,29 @@ void contacts_between(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b, 
     BoxPoints points;
     find_points(pair, axes, separation, scaled_margin, points);
     report(pair, points, pose_a.position, axes_a, scaled_margin, out);
+}
+
+void contacts_over_face(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b,
+                        const Pose& pose_b, bool face_of_b, const Vec4& outward, double margin,
+                        PairContacts& out) {
+    const Mat4 axes_a = to_matrix(pose_a.rotor), axes_b = to_matrix(pose_b.rotor);
+    const BoxPair pair = box_pair(a, pose_a.position, axes_a, b, pose_b.position, axes_b);
+    CellAxis cell;
+    ((face_of_b ? axes_b : axes_a).transpose() * outward).cwiseAbs().maxCoeff(&cell.axis);
+    BoxPoints points;
+    find_under_cell(pair, cell, face_of_b, margin / pair.unit, points);
+    if (points.count > 0) report(pair, points, pose_a.position, axes_a, margin / pair.unit, out);
+}
+
+std::uint32_t feature_over_cell(const Hyperbox&, const Hyperbox&, bool face_of_b,
+                                const Vec4& normal, std::uint32_t vertex) {
+    BoxFace corner{}, cell{};
+    for (int i = 0; i < 4; ++i) corner[i] = (vertex >> i & 1u) != 0 ? 1 : -1;
+    int axis;
+    normal.cwiseAbs().maxCoeff(&axis);
+    cell[axis] = side_of(normal[axis]);
+    return face_of_b ? kFaces * code_of(corner) + code_of(cell)
+                     : kFaces * code_of(cell) + code_of(corner);
 }
 
 }  // namespace tesserae

@@ -18,4 +18,20 @@ namespace tesserae {
 void contacts_between(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b, const Pose& pose_b,
                       double margin, PairContacts& out);
 
+/// The points under one cell of one box, whichever features are closest: at most 8, ascending by
+/// feature, each with its separation along the cell's normal; none where the cell has none.
+/// @param face_of_b   the cell is b's, otherwise a's
+/// @param outward     near the cell's normal, world
+void contacts_over_face(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b,
+                        const Pose& pose_b, bool face_of_b, const Vec4& outward, double margin,
+                        PairContacts& out);
+
+/// The feature of a vertex of one box over a cell of the other, both as contacts_between() names
+/// it.
+/// @param vertex      as hyperbox_hyperplane names it
+/// @param face_of_b   the cell is b's, otherwise a's
+/// @param normal      the cell's, in its box's frame
+std::uint32_t feature_over_cell(const Hyperbox& a, const Hyperbox& b, bool face_of_b,
+                                const Vec4& normal, std::uint32_t vertex);
+
 }  // namespace tesserae

@@ -21,6 +21,15 @@ constexpr std::uint32_t kBetween = 10;
 struct Relation {
     CapsuleCore core;
     Vec4 half;
+    Mat4 rotation;  ///< of the box
+
+    Relation(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
+             const Pose& box_pose)
+        : half(0.5 * box.size), rotation(to_matrix(box_pose.rotor)) {
+        const CapsuleCore world = core_of(capsule, pose);
+        core = {rotation.transpose() * (world.centre - box_pose.position),
+                rotation.transpose() * world.axis, world.half};
+    }
 
     /// From the box's closest point to the core's point at t.
     Vec4 excess(double t) const {
@@ -202,29 +211,17 @@ std::uint32_t feature_of(const CapsuleCore& core, double t) {
     return t == -core.half ? 0 : t == core.half ? 1 : kBetween;
 }
 
-}  // namespace
-
-void contacts_between(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
-                      const Pose& box_pose, double margin, PairContacts& out) {
-    // Into the box's frame, unless a cell hyperplane separates them.
-    const Mat4 rotation = to_matrix(box_pose.rotor);
-    const CapsuleCore world = core_of(capsule, pose);
-    const Relation relation{{rotation.transpose() * (world.centre - box_pose.position),
-                             rotation.transpose() * world.axis, world.half},
-                            0.5 * box.size};
+/// The points along one normal: two where the core passes over the cell that it is near to.
+/// @param position   the box's
+void report(const Relation& relation, const Closest& closest, double radius, const Vec4& position,
+            double margin, PairContacts& out) {
     const CapsuleCore& core = relation.core;
-    const Vec4 gaps = core.centre.cwiseAbs() - relation.half - core.half * core.axis.cwiseAbs();
-    if (!(gaps.maxCoeff() - capsule.radius <= margin)) return;
-
-    const std::optional<Closest> apart = closest_apart(relation);
-    const Closest closest = apart ? *apart : least_overlap(relation);
-    const Vec4 normal = rotation * closest.normal;
+    const Vec4 normal = relation.rotation * closest.normal;
     const auto add = [&](std::uint32_t feature, double t, double distance) {
-        const double separation = distance - capsule.radius;
+        const double separation = distance - radius;
         if (!(separation <= margin)) return;
         out.add(feature, -normal, separation,
-                box_pose.position + rotation * core.at(t) -
-                    (capsule.radius + 0.5 * separation) * normal);
+                position + relation.rotation * core.at(t) - (radius + 0.5 * separation) * normal);
     };
 
     int cell;
@@ -251,8 +248,39 @@ void contacts_between(const Hypercapsule& capsule, const Pose& pose, const Hyper
     const std::size_t deeper = part < 1 ? near : distances[0] <= distances[1] ? 0 : 1;
     const std::size_t first = ends[0].feature < ends[1].feature ? 0 : 1;
     for (std::size_t i : {first, 1 - first})
-        if (i == deeper || length > kShortStretch * capsule.radius)
+        if (i == deeper || length > kShortStretch * radius)
             add(ends[i].feature, ends[i].t, distances[i]);
+}
+
+}  // namespace
+
+void contacts_between(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
+                      const Pose& box_pose, double margin, PairContacts& out) {
+    // Nothing if a cell hyperplane separates them.
+    const Relation relation(capsule, pose, box, box_pose);
+    const CapsuleCore& core = relation.core;
+    const Vec4 gaps = core.centre.cwiseAbs() - relation.half - core.half * core.axis.cwiseAbs();
+    if (!(gaps.maxCoeff() - capsule.radius <= margin)) return;
+    const std::optional<Closest> apart = closest_apart(relation);
+    report(relation, apart ? *apart : least_overlap(relation), capsule.radius, box_pose.position,
+           margin, out);
+}
+
+void contacts_over_face(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
+                        const Pose& box_pose, bool, const Vec4& outward, double margin,
+                        PairContacts& out) {
+    const Relation relation(capsule, pose, box, box_pose);
+    const Face face = face_along(box, relation.rotation.transpose() * outward);
+    int cell;
+    face.normal.cwiseAbs().maxCoeff(&cell);
+    const Stretch stretch = stretch_over_cell(relation, face.normal, cell);
+    if (!(stretch.low.t <= stretch.high.t)) return;
+    const auto height = [&](double t) {
+        return face.normal.dot(relation.core.at(t)) - face.offset;
+    };
+    const double t =
+        height(stretch.low.t) <= height(stretch.high.t) ? stretch.low.t : stretch.high.t;
+    report(relation, {t, face.normal, height(t)}, capsule.radius, box_pose.position, margin, out);
 }
 
 }  // namespace tesserae

@@ -17,4 +17,11 @@ namespace tesserae {
 void contacts_between(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
                       const Pose& box_pose, double margin, PairContacts& out);
 
+/// The points over one cell of the box, whichever features are closest: at most 2, with their
+/// separations along the cell's normal; none where the core does not pass over the cell.
+/// @param outward   near the cell's normal, world
+void contacts_over_face(const Hypercapsule& capsule, const Pose& pose, const Hyperbox& box,
+                        const Pose& box_pose, bool face_of_box, const Vec4& outward, double margin,
+                        PairContacts& out);
+
 }  // namespace tesserae

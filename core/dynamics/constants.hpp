@@ -12,6 +12,16 @@ namespace tesserae {
 /// contacts come and go.
 constexpr double kSlop = 0.005;
 
+/// Faces whose heights differ by less than this part of the least half-size of what lies on them
+/// are flush, usual 1e-4. More, and small steps are smoothed away; less, and tiles that stand on a
+/// floor of their own are not one floor.
+constexpr double kFlush = 1e-4;
+
+/// Contacts all of whose points lie this near to a rim of the other body's face, as a part of the
+/// same, are looked at for a seam, usual 0.1. Less than what a heavy load sinks in, and its body is
+/// stopped there; more, and the look costs more.
+constexpr double kSkin = 0.1;
+
 /// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
 /// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
 constexpr double kBiasPart = 0.2;

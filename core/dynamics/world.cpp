@@ -95,6 +95,7 @@ void World::find_contacts(Schedule& schedule) {
                wake_touched(simulation_, step_);
         if (look) schedule.choose_pairs(simulation_, step_);
     }
+    if (simulation_.needs.seams) seams_.correct(simulation_, step_, schedule);
     begin_contacts(step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain,
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });

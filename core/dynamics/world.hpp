@@ -3,6 +3,7 @@
 #include "core/dynamics/stages/chunked_list.hpp"
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/stages/schedule.hpp"
+#include "core/dynamics/stages/seams.hpp"
 #include "core/dynamics/stages/step.hpp"
 
 namespace tesserae {
@@ -52,6 +53,7 @@ class World {
     StepData step_;
     IslandBuilder island_builder_;
     ChunkedList<Contact> contacts_;
+    Seams seams_;
     ChunkedList<ContactImpulse> pushing_;
     StageObserver* observer_ = nullptr;
 };

@@ -57,6 +57,22 @@ Vec4 support(const Hyperbox& shape, const Vec4& direction) {
     return 0.5 * shape.size.cwiseProduct(signs_of(direction));
 }
 
+Face face_along(const Hyperbox& shape, const Vec4& direction) {
+    int axis;
+    direction.cwiseAbs().maxCoeff(&axis);
+    return {std::copysign(1.0, direction[axis]) * Vec4::Unit(axis), 0.5 * shape.size[axis]};
+}
+
+std::uint64_t faces_near(const Hyperbox& shape, const Vec4& point, double depth) {
+    std::uint64_t faces = 0;
+    for (int axis = 0; axis < 4; ++axis) {
+        const double rim = 0.5 * shape.size[axis] - depth;
+        faces |= std::uint64_t{point[axis] >= rim} << 2 * axis;
+        faces |= std::uint64_t{-point[axis] >= rim} << (2 * axis + 1);
+    }
+    return faces;
+}
+
 double signed_distance(const Hyperbox& shape, const Vec4& point) {
     const Vec4 faces = face_distances(shape, point);
     const double deepest = faces.maxCoeff();

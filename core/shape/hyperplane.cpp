@@ -26,6 +26,12 @@ Vec4 support(const Hyperplane& shape, const Vec4& direction) {
     return shape.offset * shape.normal;
 }
 
+Face face_along(const Hyperplane& shape, const Vec4&) { return {shape.normal, shape.offset}; }
+
+std::uint64_t faces_near(const Hyperplane& shape, const Vec4& point, double depth) {
+    return signed_distance(shape, point) >= -depth ? 1 : 0;
+}
+
 double signed_distance(const Hyperplane& shape, const Vec4& point) {
     return shape.normal.dot(point) - shape.offset;
 }

@@ -29,6 +29,8 @@ double bounding_radius(const Hyperplane& shape);
 Vec4 half_extents(const Hyperplane& shape, const Mat4& rotation);
 double half_extent_along(const Hyperplane& shape, const Vec4& direction);
 Vec4 support(const Hyperplane& shape, const Vec4& direction);
+Face face_along(const Hyperplane& shape, const Vec4& direction);
+std::uint64_t faces_near(const Hyperplane& shape, const Vec4& point, double depth);
 double signed_distance(const Hyperplane& shape, const Vec4& point);
 Vec4 normal(const Hyperplane& shape, const Vec4& point);
 double ray_hit(const Hyperplane& shape, const Vec4& origin, const Vec4& direction);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <limits>
 
 #include "core/algebra/vector.hpp"
@@ -51,6 +52,12 @@ inline Rim rim_from_inside(double distance, double slope, double scale) {
     return {distance >= -kSurfaceDepth * scale ? slope : -1};
 }
 
+/// A flat part of a shape's surface, in whose half-space normal . x <= offset the shape lies.
+struct Face {
+    Vec4 normal;  ///< unit, outward
+    double offset;
+};
+
 /// Accepts what S::parameters hands out.
 struct AnyParameter {
     template <class T>
@@ -96,6 +103,16 @@ concept ShapeRoom = requires(S& own, const S& s, double mass, const Mat4& turn, 
     { ray_exit(s, point, direction) } -> std::same_as<double>;
     /// By what angle the ray misses the shape; direction unit.
     { rim(s, point, direction, range) } -> std::same_as<Rim>;
+};
+
+/// A shape with flat parts: bodies slide over several of them that lie in one plane as over one.
+template <class S>
+concept HasFaces = requires(const S& s, const Vec4& direction, const Vec4& point, double depth) {
+    /// The face whose normal is nearest to the direction.
+    { face_along(s, direction) } -> std::same_as<Face>;
+    /// A bit for each face whose plane is no deeper than this above a point: the same for every
+    /// point, or all where there are more faces than bits.
+    { faces_near(s, point, depth) } -> std::same_as<std::uint64_t>;
 };
 
 }  // namespace tesserae

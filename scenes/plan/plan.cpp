@@ -57,6 +57,8 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                 "friction = 0 of all that moves: contacts have no tangent rows");
     plan.decide("restitution", needs.restitution, "contacts may rebound",
                 "restitution = 0 everywhere: nothing rebounds");
+    plan.decide("seams", needs.seams, "flush faces of several bodies are gone over as one",
+                "no hyperboxes: no body has faces that could be flush");
     plan.decide("islands in colours", fits_floats,
                 fmt::format("islands of {} contacts or more, eight contacts at a time in float; "
                             "smaller ones one by one",

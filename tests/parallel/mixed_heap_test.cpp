@@ -72,6 +72,24 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSoftSubsteps) {
     expect_serial_bits(mixed_heap(), soft(), 100, serial);
 }
 
+/// Boxes, capsules and balls that slide over tiles, several to each seam.
+TEST(Seams, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
+    Bodies bodies;
+    BodyType tile = box_type(Vec4::Ones());
+    tile.fixed_position = tile.fixed_rotation = true;
+    bodies.types = {tile, box_type({0.5, 0.3, 0.3, 0.3}), capsule_type(0.15, 0.3),
+                    sphere_type(0.15)};
+    for (int i = 0; i < 216; ++i)
+        add(bodies, 0, {i % 6 + 0.5, -0.5, i / 6 % 6 + 0.5, i / 36 + 0.5});
+    for (int i = 0; i < 343; ++i)
+        add(bodies, 1 + static_cast<std::uint32_t>(i % 3),
+            {0.7 * (i % 7) + 0.9, 0.15, 0.7 * (i / 7 % 7) + 0.9, 0.7 * (i / 49) + 0.9},
+            {1.0 - 0.01 * i, 0, 0.5, 0.005 * i});
+    World serial(bodies, {});
+    for (int i = 0; i < 80; ++i) serial.step(1.0 / 80);
+    expect_serial_bits(bodies, {}, 80, serial, {1, 2, 4});
+}
+
 /// One island, with enough contacts to be coloured.
 TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     const Bodies bodies = packed_spheres([](int i) { return sphere_type(0.5, 1 + i % 3, 0.5); });

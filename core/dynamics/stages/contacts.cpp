@@ -6,20 +6,23 @@
 
 namespace tesserae {
 
+double margin_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
+    const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+    double speed = (step.velocity[b] - step.velocity[a]).norm();
+    if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
+    if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
+    if (type_a.falls != type_b.falls) speed += step.h * simulation.settings.gravity.norm();
+    return std::min(type_a.slop, type_b.slop) + step.h * speed;
+}
+
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                    std::vector<Contact>& list) {
     const Bodies& bodies = simulation.bodies;
-    const double h = step.h, gravity = simulation.settings.gravity.norm();
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const auto [a, b] = step.pairs[i];
-        const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
-        double speed = (step.velocity[b] - step.velocity[a]).norm();
-        if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
-        if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
-        if (type_a.falls != type_b.falls) speed += h * gravity;
-        const double margin = std::min(type_a.slop, type_b.slop) + h * speed;
         find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
-                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]},
+                      margin_of(simulation, step, a, b), list);
     }
 }
 

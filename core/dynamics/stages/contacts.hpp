@@ -4,6 +4,9 @@
 
 namespace tesserae {
 
+/// Up to what separation [m] a pair's points are found: see find_contacts().
+double margin_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+
 /// Narrow phase of step.pairs in the range: appends their contacts to a list. Reported are points
 /// that can close within one sub-step at the present relative velocity, and those that are within
 /// the allowed overlap of touching.

@@ -21,6 +21,9 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
     needs.friction = any([](const auto& type) { return type.movable && type.friction > 0; });
     needs.restitution = any([](const auto& type) { return type.restitution > 0; });
     needs.uneven_inertia = any([](const auto& type) { return !type.isotropic; });
+    needs.seams = std::any_of(bodies.types.begin(), bodies.types.end(), [](const BodyType& type) {
+        return std::visit([]<class S>(const S&) { return S::kBounded && HasFaces<S>; }, type.shape);
+    });
     needs.turning = any([](const auto& type) { return !(type.inverse_inertia == Bivector{}); });
     for (BodyId id = 0; id < bodies.size() && !needs.turning; ++id)
         needs.turning = turns(bodies.rotor[id], bodies.angular_velocity[id]);

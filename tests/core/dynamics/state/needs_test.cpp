@@ -52,6 +52,8 @@ TEST(Needs, AreThoseOfTheBodies) {
     expect(with(box_type({1, 2, 1, 1})), true, false, true, true, "a box");
     expect(with(held_cube), false, false, false, false, "a cube that cannot turn");
     expect(with(held_rough), true, false, false, false, "a box that cannot turn");
+    EXPECT_TRUE(needs_of(with(cube)).seams);
+    EXPECT_FALSE(needs_of(with(capsule_type(1, 1))).seams) << "a floor that is one plane has none";
     expect(with(held_box, {1, 0, 0, 0, 0, 0}), false, false, false, true, "a driven box");
 }
 
@@ -63,7 +65,7 @@ TEST(Needs, WhatIsLeftOutWouldChangeNothing) {
             const Simulation start = make_simulation(bodies, settings);
             const Needs& needs = start.needs;
             ASSERT_FALSE(needs.friction || needs.restitution || needs.uneven_inertia ||
-                         needs.turning);
+                         needs.turning || needs.seams);
             Simulation with_all = start;
             with_all.needs = Needs{};
             World decided(start, coloured_from), all(with_all, coloured_from);

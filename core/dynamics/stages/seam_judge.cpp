@@ -1,0 +1,295 @@
+#include "core/dynamics/stages/seam_judge.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "core/contact/find_contacts.hpp"
+#include "core/dynamics/stages/contacts.hpp"
+
+namespace tesserae {
+namespace {
+
+/// Cosines of angles. Within the first two directions are one (1e-4 rad), within the second a
+/// normal is meant to be that of a face (0.05 rad), beyond the third it pushes along the face more
+/// than up (60 degrees).
+constexpr double kSame = 1 - 5e-9, kNear = 0.99875, kSteep = 0.5;
+
+/// A part of a body's least half-size [m].
+double part_of(const TypeProperties& type, double part) { return part / kSlop * type.slop; }
+
+/// A body where it is.
+struct Placed {
+    const Shape& shape;
+    Pose pose;
+
+    Placed(const Simulation& simulation, const StepData& step, BodyId id)
+        : shape(simulation.bodies.type_of(id).shape), pose{step.position[id], step.rotor[id]} {}
+
+    Vec4 to_own(const Vec4& direction) const {
+        return to_matrix(pose.rotor).transpose() * direction;
+    }
+    /// The face that looks most along a direction, in the world.
+    std::optional<Face> face_towards(const Vec4& direction) const {
+        return std::visit(
+            [&]<class S>(const S& s) -> std::optional<Face> {
+                if constexpr (!HasFaces<S>) {
+                    return std::nullopt;
+                } else if constexpr (!S::kBounded) {
+                    return face_along(s, direction);
+                } else {
+                    const Mat4 axes = to_matrix(pose.rotor);
+                    const Face own = face_along(s, axes.transpose() * direction);
+                    const Vec4 normal = axes * own.normal;
+                    return Face{normal, own.offset + normal.dot(pose.position)};
+                }
+            },
+            shape);
+    }
+    /// The same, if its normal is near to the direction.
+    std::optional<Face> face_near(const Vec4& direction) const {
+        const std::optional<Face> face = face_towards(direction);
+        return face && face->normal.dot(direction) >= kNear ? face : std::nullopt;
+    }
+    double distance_to(const Vec4& point) const {
+        return std::visit(
+            [&]<class S>(const S& s) {
+                if constexpr (S::kBounded)
+                    return signed_distance(s, to_own(point - pose.position));
+                else
+                    return signed_distance(s, point);
+            },
+            shape);
+    }
+    double reach_along(const Vec4& direction) const {
+        const Vec4 own = to_own(direction);
+        return std::visit([&](const auto& s) { return half_extent_along(s, own); }, shape);
+    }
+    /// Of its lowest point over a face's plane.
+    double height_over(const Face& face) const {
+        return face.normal.dot(pose.position) - face.offset - reach_along(face.normal);
+    }
+    /// Of its highest point under a face's plane.
+    double depth_under(const Face& face) const {
+        return face.offset - face.normal.dot(pose.position) - reach_along(face.normal);
+    }
+};
+
+/// Out of the other body: all contacts of a meeting have one normal.
+Vec4 normal_of(const StepData& step, const Meeting& m) {
+    const Contact& contact = step.contacts[m.begin];
+    return contact.b == m.body ? contact.normal : Vec4(-contact.normal);
+}
+
+/// Where the surface of the other body is.
+Vec4 point_below(const Contact& contact, BodyId body) {
+    const double half = contact.b == body ? -0.5 : 0.5;
+    return contact.point + half * contact.separation * contact.normal;
+}
+
+std::span<const Contact> contacts_of(const StepData& step, const Meeting& m) {
+    return {step.contacts.data() + m.begin, m.end - m.begin};
+}
+
+/// Of the deepest point, at least 0.
+double depth_of(const StepData& step, const Meeting& m) {
+    double depth = 0;
+    for (const Contact& c : contacts_of(step, m)) depth = std::max(depth, -c.separation);
+    return depth;
+}
+
+/// The face that the body lies on, if the meeting is one with ground.
+std::optional<Face> ground_face(const Simulation& simulation, const StepData& step,
+                                const Meeting& m) {
+    const std::optional<Face> face =
+        Placed(simulation, step, m.other).face_near(normal_of(step, m));
+    if (!face) return std::nullopt;
+    // No part of it hangs down beside the face.
+    const double height = Placed(simulation, step, m.body).height_over(*face);
+    if (height < -depth_of(step, m) - simulation.type_of(m.body).slop) return std::nullopt;
+    return face;
+}
+
+/// Whether the meeting is a seam, as a face of the body's ground tells.
+bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData& step,
+                const Meeting& m) {
+    const Vec4 normal = normal_of(step, m);
+    if (ground.normal.dot(normal) >= kSame) return false;
+    const auto contacts = contacts_of(step, m);
+    const auto height_over = [&](const Face& face, const Contact& c) {
+        return face.normal.dot(point_below(c, m.body)) - face.offset;
+    };
+    const double flush = part_of(simulation.type_of(m.body), kFlush);
+    for (const Contact& c : contacts)
+        if (height_over(ground, c) > flush) return false;
+    // The points may be few of those where the bodies touch: nor may the other body rise there.
+    const Placed other(simulation, step, m.other);
+    const std::optional<Face> face = other.face_near(ground.normal);
+    if (!face) return other.depth_under(ground) >= -flush;
+    if (face->normal.dot(normal) >= kSame) return false;
+    const double skin = part_of(simulation.type_of(m.body), kSkin);
+    return std::all_of(contacts.begin(), contacts.end(),
+                       [&](const Contact& c) { return height_over(*face, c) >= -skin; });
+}
+
+/// Whether all points on a shape are near another rim of the face that they lie on.
+template <HasFaces S>
+bool lie_on_a_rim(const S& shape, const Pose& pose, BodyId body, std::span<const Contact> contacts,
+                  double depth) {
+    const Mat4 turn = to_matrix(pose.rotor).transpose();
+    std::uint64_t faces = ~std::uint64_t{0};
+    for (const Contact& c : contacts)
+        faces &= faces_near(shape, turn * (point_below(c, body) - pose.position), depth);
+    return std::popcount(faces) > 1;  // beside the face itself
+}
+
+}  // namespace
+
+bool may_be_seam(const Simulation& simulation, const StepData& step, const Meeting& m) {
+    const Placed other(simulation, step, m.other);
+    const double depth = part_of(simulation.type_of(m.body), kSkin);
+    return std::visit(
+        [&]<class S>(const S& s) {
+            if constexpr (!HasFaces<S> || !S::kBounded) {
+                return false;
+            } else {
+                const Vec4 normal = other.to_own(normal_of(step, m));
+                return normal.dot(face_along(s, normal).normal) < kNear ||
+                       lie_on_a_rim(s, other.pose, m.body, contacts_of(step, m), depth);
+            }
+        },
+        other.shape);
+}
+
+void SeamJudge::clear() {
+    corrections.clear();
+    contacts.clear();
+}
+
+void SeamJudge::judge(const Simulation& simulation, const StepData& step,
+                      std::span<const Meeting> meetings) {
+    find_ground(simulation, step, meetings);
+    joined_.clear();
+    for (const Ground& ground : grounds_)
+        if (!ground.is_seam && !is_joined(*ground.meeting))
+            join_floor(ground.face, simulation, step, meetings);
+    for (const Meeting& m : meetings) {
+        if (!m.may_be_seam || is_joined(m)) continue;
+        const auto told = std::find_if(grounds_.begin(), grounds_.end(), [&](const Ground& g) {
+            return !g.is_seam && g.meeting != &m && is_seam_at(g.face, simulation, step, m);
+        });
+        if (told != grounds_.end()) correct_seam(told->face.normal, simulation, step, m);
+    }
+}
+
+void SeamJudge::find_ground(const Simulation& simulation, const StepData& step,
+                            std::span<const Meeting> meetings) {
+    grounds_.clear();
+    for (const Meeting& m : meetings)
+        if (const std::optional<Face> face = ground_face(simulation, step, m))
+            grounds_.push_back({&m, *face, false});
+    for (Ground& ground : grounds_)
+        for (const Ground& other : grounds_)
+            if (ground.meeting->may_be_seam && &ground != &other &&
+                is_seam_at(other.face, simulation, step, *ground.meeting))
+                ground.is_seam = true;
+}
+
+bool SeamJudge::is_joined(const Meeting& m) const {
+    return std::find(joined_.begin(), joined_.end(), &m) != joined_.end();
+}
+
+/// All that does not move and has a face in the plane of the given one.
+void SeamJudge::find_floor(const Face& face, const Simulation& simulation, const StepData& step,
+                           std::span<const Meeting> meetings) {
+    floor_.clear();
+    for (const Meeting& m : meetings) {
+        if (simulation.type_of(m.other).movable || is_joined(m)) continue;
+        const std::optional<Face> own = Placed(simulation, step, m.other).face_towards(face.normal);
+        if (!own || own->normal.dot(face.normal) < kSame) continue;
+        const Vec4& at = step.position[m.body];
+        const double rise = own->normal.dot(at) - own->offset - (face.normal.dot(at) - face.offset);
+        if (std::abs(rise) <= part_of(simulation.type_of(m.body), kFlush))
+            floor_.push_back({&m, *own, {}});
+    }
+}
+
+/// The contacts that the body would have with a hyperplane in the face's place, if there is floor
+/// under all of them.
+void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const StepData& step,
+                           std::span<const Meeting> meetings) {
+    find_floor(face, simulation, step, meetings);
+    if (floor_.size() < 2) return;
+    const BodyId body = meetings[0].body;
+    const Placed placed(simulation, step, body);
+    double margin = 0;
+    for (const Floor& f : floor_)
+        margin = std::max(margin, margin_of(simulation, step, body, f.meeting->other));
+    Hyperplane plane;
+    plane.normal = face.normal;
+    plane.offset = face.offset;
+    on_plane_.clear();
+    find_contacts(0, placed.shape, placed.pose, 1, plane, placed.pose, margin, on_plane_);
+
+    const double flush = part_of(simulation.type_of(body), kFlush);
+    for (const Contact& c : on_plane_) {
+        const Vec4 point = point_below(c, 0);
+        const auto under = std::find_if(floor_.begin(), floor_.end(), [&](const Floor& f) {
+            return Placed(simulation, step, f.meeting->other).distance_to(point) <= flush;
+        });
+        if (under == floor_.end()) return;
+        under->points |= 1u << (&c - on_plane_.data());
+    }
+    for (const Floor& f : floor_) stand_on(f, simulation, step);
+}
+
+/// The points of on_plane_ that are over one part of the floor.
+void SeamJudge::stand_on(const Floor& floor, const Simulation& simulation, const StepData& step) {
+    const Meeting& m = *floor.meeting;
+    const auto first = static_cast<std::uint32_t>(contacts.size());
+    const BodyId a = std::min(m.body, m.other), b = std::max(m.body, m.other);
+    const Placed placed_a(simulation, step, a), placed_b(simulation, step, b);
+    const bool face_of_b = m.other == b;
+    const Vec4 outward = (face_of_b ? placed_b : placed_a).to_own(floor.face.normal);
+    const double margin = margin_of(simulation, step, a, b);
+    for (std::size_t i = 0; i < on_plane_.size(); ++i) {
+        const Contact& c = on_plane_[i];
+        const Vec4 on_body = c.point - 0.5 * c.separation * c.normal;
+        const double separation = floor.face.normal.dot(on_body) - floor.face.offset;
+        if ((floor.points >> i & 1u) == 0 || separation > margin) continue;
+        contacts.push_back(
+            {face_of_b ? Vec4(-floor.face.normal) : floor.face.normal,
+             on_body - 0.5 * separation * floor.face.normal, separation, a, b,
+             feature_over_face(placed_a.shape, placed_b.shape, face_of_b, outward, c.feature)});
+    }
+    finish(m, first, floor.face.normal.dot(normal_of(step, m)));
+    joined_.push_back(&m);
+}
+
+/// The points over the other body's own face. There are none if the body reaches over that face's
+/// rim by nothing to speak of, as most do that touch at an edge.
+void SeamJudge::correct_seam(const Vec4& up, const Simulation& simulation, const StepData& step,
+                             const Meeting& m) {
+    const auto first = static_cast<std::uint32_t>(contacts.size());
+    const Vec4 normal = normal_of(step, m);
+    const auto face = Placed(simulation, step, m.other).face_near(up);
+    const double flush = part_of(simulation.type_of(m.body), kFlush);
+    if (face && (face->normal.dot(normal) > kSteep || depth_of(step, m) > flush)) {
+        const BodyId a = std::min(m.body, m.other), b = std::max(m.body, m.other);
+        const Placed placed_a(simulation, step, a), placed_b(simulation, step, b);
+        find_contacts_over_face(a, placed_a.shape, placed_a.pose, b, placed_b.shape, placed_b.pose,
+                                m.other == b, face->normal, margin_of(simulation, step, a, b),
+                                contacts);
+    }
+    finish(m, first, up.dot(normal));
+}
+
+/// The contacts made since `first` take the place of the meeting's.
+void SeamJudge::finish(const Meeting& m, std::uint32_t first, double cosine) {
+    std::sort(contacts.begin() + first, contacts.end(),
+              [](const Contact& c, const Contact& d) { return c.feature < d.feature; });
+    corrections.push_back(
+        {m.begin, m.end, first, static_cast<std::uint32_t>(contacts.size()), cosine});
+}
+
+}  // namespace tesserae

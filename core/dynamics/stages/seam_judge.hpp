@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/dynamics/state/step_data.hpp"
+
+namespace tesserae {
+
+/// All contacts of a body with one other: [begin, end) of the list.
+struct Meeting {
+    BodyId body, other;
+    std::uint32_t begin, end;
+    bool may_be_seam = false;
+};
+
+/// Whether the two bodies alone leave it open that the meeting is a seam: its points do not lie
+/// straight over one face of the other body, or they do and all near one of its rims.
+bool may_be_seam(const Simulation& simulation, const StepData& step, const Meeting& meeting);
+
+/// Contacts [begin, end) of the list give way to [first, last) of SeamJudge::contacts.
+struct SeamCorrection {
+    std::uint32_t begin, end;
+    std::uint32_t first, last;
+    double cosine;  ///< of the angle by which the normal is turned, at most
+};
+
+/// Sees a body with all that it meets. What it lies on, on a face, is its ground.
+///
+/// - Faces of the ground in one plane that do not move: the body has the contacts that it would
+///   have with a hyperplane there, each with the body under it, if there is one under all of them.
+/// - Otherwise a meeting is a seam if all its points are on or under the plane of the ground's
+///   face, but push another way: lifted out of the ground, the body would not touch there. It is
+///   given the points over the other body's own face along the plane, if there is one, else none.
+///   Only ground whose own meeting is no seam tells so: no body is left without.
+class SeamJudge {
+  public:
+    std::vector<SeamCorrection> corrections;
+    std::vector<Contact> contacts;
+
+    void clear();
+    /// Appends the corrections of one body's contacts.
+    /// @param meetings   all that it has, ascending
+    void judge(const Simulation& simulation, const StepData& step,
+               std::span<const Meeting> meetings);
+
+  private:
+    struct Ground {
+        const Meeting* meeting;
+        Face face;     ///< world
+        bool is_seam;  ///< as other ground tells
+    };
+    struct Floor {
+        const Meeting* meeting;
+        Face face;
+        std::uint32_t points;  ///< bit i: of on_plane_ it is under the i-th
+    };
+
+    void find_ground(const Simulation& simulation, const StepData& step,
+                     std::span<const Meeting> meetings);
+    bool is_joined(const Meeting& meeting) const;
+    void find_floor(const Face& face, const Simulation& simulation, const StepData& step,
+                    std::span<const Meeting> meetings);
+    void join_floor(const Face& face, const Simulation& simulation, const StepData& step,
+                    std::span<const Meeting> meetings);
+    void stand_on(const Floor& floor, const Simulation& simulation, const StepData& step);
+    void correct_seam(const Vec4& up, const Simulation& simulation, const StepData& step,
+                      const Meeting& meeting);
+    void finish(const Meeting& meeting, std::uint32_t first, double cosine);
+
+    std::vector<Ground> grounds_;
+    std::vector<Floor> floor_;
+    std::vector<const Meeting*> joined_;
+    std::vector<Contact> on_plane_;
+};
+
+}  // namespace tesserae

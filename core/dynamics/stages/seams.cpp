@@ -1,0 +1,96 @@
+#include "core/dynamics/stages/seams.hpp"
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+
+namespace tesserae {
+namespace {
+
+/// Contacts of a range at least.
+constexpr std::size_t kSeamGrain = 1024;
+
+bool same_pair(const Contact& c, const Contact& d) { return c.a == d.a && c.b == d.b; }
+
+/// Of a floor that may be made of several bodies.
+bool may_be_floor(const Simulation& simulation, BodyId id) {
+    return !simulation.type_of(id).movable &&
+           std::visit([]<class S>(const S&) { return S::kBounded && HasFaces<S>; },
+                      simulation.bodies.type_of(id).shape);
+}
+
+}  // namespace
+
+void Seams::correct(const Simulation& simulation, StepData& step, Schedule& schedule) {
+    list_meetings(step, schedule, [&](Meeting& m) {
+        if (!simulation.type_of(m.body).movable) return false;
+        return may_be_floor(simulation, m.other) || may_be_seam(simulation, step, m);
+    });
+    if (meetings_.empty()) return;
+    is_marked_.assign(simulation.bodies.size(), 0);
+    for (const Meeting& m : meetings_) is_marked_[m.body] = 1;
+    list_meetings(step, schedule, [&](Meeting& m) {
+        if (is_marked_[m.body] == 0) return false;
+        m.may_be_seam = may_be_seam(simulation, step, m);
+        return true;
+    });
+
+    judge_.clear();
+    for (auto begin = meetings_.begin(); begin != meetings_.end();) {
+        const auto end = std::find_if(begin, meetings_.end(),
+                                      [&](const Meeting& m) { return m.body != begin->body; });
+        if (end - begin > 1) judge_.judge(simulation, step, {begin, end});
+        begin = end;
+    }
+    if (!judge_.corrections.empty()) splice(step);
+}
+
+/// Every meeting is one of either body.
+template <class Choose>
+void Seams::list_meetings(const StepData& step, Schedule& schedule, const Choose& choose) {
+    const std::vector<Contact>& contacts = step.contacts;
+    const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
+        schedule.for_each_range(count, grain, work);
+    };
+    const auto list_range = [&](Range range, std::vector<Meeting>& list) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (i > 0 && same_pair(contacts[i - 1], contacts[i])) continue;
+            std::size_t end = i + 1;  // in the next range perhaps
+            while (end < contacts.size() && same_pair(contacts[i], contacts[end])) ++end;
+            const auto [first, last] = std::pair(std::uint32_t(i), std::uint32_t(end));
+            const BodyId a = contacts[i].a, b = contacts[i].b;
+            for (Meeting m : {Meeting{a, b, first, last}, Meeting{b, a, first, last}})
+                if (choose(m)) list.push_back(m);
+        }
+    };
+    lists_.collect(for_each_range, contacts.size(), kSeamGrain, list_range, meetings_);
+    std::sort(meetings_.begin(), meetings_.end(), [](const Meeting& m, const Meeting& n) {
+        return std::tie(m.body, m.begin) < std::tie(n.body, n.begin);
+    });
+}
+
+/// Of two corrections of one pair, for either body, that holds which turns the normal more.
+void Seams::splice(StepData& step) {
+    std::vector<SeamCorrection>& corrections = judge_.corrections;
+    std::sort(corrections.begin(), corrections.end(),
+              [](const SeamCorrection& c, const SeamCorrection& d) {
+                  return std::tie(c.begin, c.cosine, c.first) <
+                         std::tie(d.begin, d.cosine, d.first);
+              });
+    corrected_.clear();
+    std::uint32_t done = 0;
+    const auto copy = [&](const std::vector<Contact>& from, std::uint32_t begin,
+                          std::uint32_t end) {
+        corrected_.insert(corrected_.end(), from.begin() + begin, from.begin() + end);
+    };
+    for (const SeamCorrection& c : corrections) {
+        if (c.begin < done) continue;
+        copy(step.contacts, done, c.begin);
+        copy(judge_.contacts, c.first, c.last);
+        done = c.end;
+    }
+    copy(step.contacts, done, static_cast<std::uint32_t>(step.contacts.size()));
+    step.contacts.swap(corrected_);
+}
+
+}  // namespace tesserae
