@@ -228,6 +228,40 @@ std::vector<ExtremeCase> blows() {
     return cases;
 }
 
+/// A body of 0.3 m put down on tiles of 0.5 m, on its way at 3 m/s across them, and the same on one
+/// plane.
+ExtremeCase seams(std::string name, BodyType body, double friction) {
+    return {std::move(name), [=](const PhysicsSettings& settings) -> Measurements {
+                const auto start = [&](bool tiled) {
+                    Bodies bodies;
+                    if (!tiled) add(bodies, plane_type(Vec4::UnitY(), 0, friction), Vec4::Zero());
+                    BodyType tile = box_type(Vec4::Constant(0.5), 1);
+                    tile.fixed_position = tile.fixed_rotation = true;
+                    tile.friction = friction;
+                    bodies.types.push_back(tile);
+                    const auto type = static_cast<std::uint32_t>(bodies.types.size() - 1);
+                    for (int i = 0; tiled && i < 10 * 6 * 4; ++i)
+                        add(bodies, type,
+                            {0.5 * (i % 10) - 0.3, -0.25, 0.5 * (i / 10 % 6) - 0.3,
+                             0.5 * (i / 60) - 0.8});
+                    BodyType rough = body;
+                    rough.friction = friction;
+                    add(bodies, rough, {0, 0.15, 0, 0}, {2.6, 0, 1.4, 0.3});
+                    return bodies;
+                };
+                World tiles(start(true), settings), plane(start(false), settings);
+                double path = 0, hop = 0;
+                for (int i = 0; i < 240; ++i) {
+                    tiles.step(1.0 / 240), plane.step(1.0 / 240);
+                    Vec4 apart = tiles.bodies().position.back() - plane.bodies().position.back();
+                    hop = std::max(hop, std::abs(apart[1]));
+                    apart[1] = 0;
+                    path = std::max(path, apart.norm());
+                }
+                return {{"path differs by", "mm", 1e3 * path}, {"hops by", "mm", 1e3 * hop}};
+            }};
+}
+
 /// 10 x 10 x 10 x 10 spheres between walls, put down touching, 60 s.
 ExtremeCase resting_spheres() {
     return {"10^4 spheres at rest for 60 s", [](PhysicsSettings settings) {
@@ -281,6 +315,10 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(staying("capsule 10^4 times as long as wide, 4 s", long_capsule(), 0.02, 4));
     for (ExtremeCase& rotation : rotations()) cases.push_back(std::move(rotation));
     for (ExtremeCase& hit : blows()) cases.push_back(std::move(hit));
+    cases.push_back(seams("box slides over seams", box_type({0.4, 0.3, 0.3, 0.3}), 0));
+    cases.push_back(
+        seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}), 0.3));
+    cases.push_back(seams("ball slides over seams", sphere_type(0.15, 1), 0));
     cases.push_back(bouncing());
     if (with_long) cases.push_back(resting_spheres());
     return cases;
