@@ -315,9 +315,9 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(staying("capsule 10^4 times as long as wide, 4 s", long_capsule(), 0.02, 4));
     for (ExtremeCase& rotation : rotations()) cases.push_back(std::move(rotation));
     for (ExtremeCase& hit : blows()) cases.push_back(std::move(hit));
-    cases.push_back(seams("box slides over seams", box_type({0.4, 0.3, 0.3, 0.3}), 0));
+    cases.push_back(seams("box slides over seams", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0));
     cases.push_back(
-        seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}), 0.3));
+        seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0.3));
     cases.push_back(seams("ball slides over seams", sphere_type(0.15, 1), 0));
     cases.push_back(bouncing());
     if (with_long) cases.push_back(resting_spheres());

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <utility>
+#include <optional>
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/stages/contacts.hpp"
@@ -240,6 +240,7 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
         if (under == floor_.end()) return;
         under->points |= 1u << (&c - on_plane_.data());
     }
+    if (on_plane_.empty()) return;
     for (const Floor& f : floor_) stand_on(f, simulation, step);
 }
 

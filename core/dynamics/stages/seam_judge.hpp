@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +12,7 @@ namespace tesserae {
 struct Meeting {
     BodyId body, other;
     std::uint32_t begin, end;
-    bool may_be_seam = false;
+    bool may_be_seam = false;  ///< as the function says
 };
 
 /// Whether the two bodies alone leave it open that the meeting is a seam: its points do not lie
