@@ -13,25 +13,38 @@ bool is_still(const Simulation& simulation, const StepData& step, BodyId id) {
     return speed < kStill / kSlop * type.slop;
 }
 
+/// Slow is not at rest: what nothing holds flies on, however slowly.
+bool stands_still(const StepData& step, BodyId id) {
+    return step.velocity[id] == Vec4::Zero() && step.angular_velocity[id] == Bivector{};
+}
+
 /// step.lowest_of_island: its lowest movable body if it may fall asleep, else kAwake.
 void find_islands_at_rest(const Simulation& simulation, StepData& step) {
     std::vector<BodyId>& lowest = step.lowest_of_island;
     lowest.assign(step.islands.size(), kAwake);
     for (std::size_t island = 0; island < lowest.size(); ++island) {
         BodyId least = kAwake;
+        bool is_supported = false, all_stand = true;
         const auto rests = [&](BodyId id) {
             if (is_driven(simulation, id)) return false;
             if (!simulation.type_of(id).movable) return true;
             least = std::min(least, id);
+            all_stand = all_stand && stands_still(step, id);
             return simulation.memory.still[id] >= kTimeToSleep;
         };
         // Most islands that move show it soon.
         const std::uint32_t* const first = step.islands.contacts.data();
         const Range places = step.islands.places(island);
-        if (std::all_of(first + places.begin, first + places.end, [&](std::uint32_t place) {
-                const Contact& contact = step.contacts[place];
-                return rests(contact.a) && rests(contact.b);
-            }))
+        if (std::all_of(first + places.begin, first + places.end,
+                        [&](std::uint32_t place) {
+                            const Contact& contact = step.contacts[place];
+                            if (step.impulses[place].normal > 0)
+                                is_supported = is_supported ||
+                                               !simulation.type_of(contact.a).movable ||
+                                               !simulation.type_of(contact.b).movable;
+                            return rests(contact.a) && rests(contact.b);
+                        }) &&
+            (is_supported || all_stand))
             lowest[island] = least;
     }
 }
@@ -79,7 +92,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
     next.resize(count);
     for (BodyId id = 0; id < count; ++id) {
         const bool rests = simulation.type_of(id).movable && !is_driven(simulation, id) &&
-                           still[id] >= kTimeToSleep;
+                           still[id] >= kTimeToSleep && stands_still(step, id);
         next[id] = rests ? id : kAwake;
     }
     for (std::size_t island = 0; island < lowest.size(); ++island)

@@ -14,7 +14,8 @@ bool touches_sleeper(const StepData& step, Range contacts);
 bool wake_touched(const Simulation& simulation, StepData& step);
 
 /// After the last sub-step: counts for how long bodies have been still, and lets the islands fall
-/// asleep all of whose bodies have been so long enough and which touch nothing driven. The
+/// asleep all of whose bodies have been so long enough, which something that does not move carries
+/// (or all of whose bodies stand) and which touch nothing driven. The
 /// velocities of bodies that fall asleep become zero in the step's result.
 void fall_asleep(Simulation& simulation, StepData& step);
 

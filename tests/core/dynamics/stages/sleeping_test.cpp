@@ -110,6 +110,25 @@ TEST(Sleeping, ABodyAtItsHighestPointStaysAwake) {
     EXPECT_NEAR(world.bodies().position[0][1], 2 - 5, 1e-12);
 }
 
+/// A body much slower for its size than what is still.
+TEST(Sleeping, WhatNothingCarriesFliesOn) {
+    PhysicsSettings weightless = sleepy();
+    weightless.gravity.setZero();
+    Bodies bodies;
+    add(bodies, sphere_type(10), Vec4::Zero(), {0.05, 0, 0, 0});
+    add(bodies, box_type(Vec4::Constant(10)), {0, 100, 0, 0}, Vec4::Zero(), {0, 1e-3, 0, 0, 0, 0});
+    for (const double x : {0.0, 20.0})  // two that touch, and drift together
+        add(bodies, sphere_type(10), {x, -100, 0, 0}, {0, 0, 0.05, 0});
+    add(bodies, sphere_type(10), {100, 0, 0, 0});  // stands
+    World world(bodies, weightless);
+    run(world, 480);
+    const Bodies& now = world.bodies();
+    EXPECT_EQ(world.memory().asleep, (std::vector<BodyId>{kAwake, kAwake, kAwake, kAwake, 4}));
+    EXPECT_NEAR(now.position[0][0], 0.05 * 2, 1e-12);
+    EXPECT_NEAR(now.angular_velocity[1].xz, 1e-3, 1e-15);
+    for (const BodyId id : {2u, 3u}) EXPECT_NEAR(now.position[id][2], 0.05 * 2, 1e-12);
+}
+
 TEST(Sleeping, ContinuesBitForBitFromItsBodiesAndMemory) {
     Bodies bodies = two_stacks();
     for (BodyId id = 1; id < bodies.size(); ++id)  // of uneven inertia, which turns with them
