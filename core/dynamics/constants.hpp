@@ -64,6 +64,11 @@ constexpr std::uint32_t kColouredFrom = 1024;
 /// the last trembling of a pile keeps it awake.
 constexpr double kStill = 10 * kSlop;
 
+/// A body's least inertia, as a part of mass times bounding radius squared, usual 1e-7: one thinner
+/// than some 3e-4 of its length turns about its length as if it were that thick. Less, and the
+/// rounding of where it is touched throws it about; more, and visible rods turn too slowly.
+constexpr double kLeastInertia = 1e-7;
+
 /// How long [s] all bodies of an island have to be still before it falls asleep: longer than a body
 /// thrown upward is at its highest point.
 constexpr double kTimeToSleep = 0.5;

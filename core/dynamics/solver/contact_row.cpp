@@ -17,10 +17,10 @@ Vec4 response(const Simulation& simulation, const StepData& step, BodyId id, con
     return moved + velocity_at(angular_response(simulation, step, id, wedge(r, impulse)), r);
 }
 
-double greatest_response(const TypeProperties& type) {
+/// Change of the velocity of a point by turning, by a unit impulse there, at most [1/kg].
+double greatest_turn(const TypeProperties& type) {
     const Bivector& i = type.inverse_inertia;
-    const double turn = std::max({i.xy, i.xz, i.xw, i.yz, i.yw, i.zw});
-    return type.inverse_mass + turn * type.radius * type.radius;
+    return std::max({i.xy, i.xz, i.xw, i.yz, i.yw, i.zw}) * type.radius * type.radius;
 }
 
 /// The inverses of the responses of both bodies together, along the normal and across it.
@@ -55,8 +55,9 @@ double friction_of(const Simulation& simulation, BodyId a, BodyId b) {
 }
 
 double least_response(const Simulation& simulation, BodyId a, BodyId b) {
-    return kNoResponse *
-           (greatest_response(simulation.type_of(a)) + greatest_response(simulation.type_of(b)));
+    const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+    const double moves = type_a.inverse_mass + type_b.inverse_mass;
+    return kNoResponse * (moves > 0 ? moves : greatest_turn(type_a) + greatest_turn(type_b));
 }
 
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {

@@ -1,5 +1,6 @@
 #include "core/dynamics/state/type_properties.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace tesserae {
@@ -11,6 +12,11 @@ Bivector plane_inertias(const Vec4& J) {
 
 Bivector inverse(const Bivector& b) {
     return {1 / b.xy, 1 / b.xz, 1 / b.xw, 1 / b.yz, 1 / b.yw, 1 / b.zw};
+}
+
+Bivector at_least(double least, const Bivector& b) {
+    return {std::max(b.xy, least), std::max(b.xz, least), std::max(b.xw, least),
+            std::max(b.yz, least), std::max(b.yw, least), std::max(b.zw, least)};
 }
 
 TypeProperties properties_of(const BodyType& type) {
@@ -26,6 +32,7 @@ TypeProperties properties_of(const BodyType& type) {
         [&](const auto& shape) { return plane_inertias(second_moments(shape, type.mass)); },
         type.shape);
     p.radius = bounding_radius(type.shape);
+    p.inertia = at_least(kLeastInertia * p.mass * p.radius * p.radius, p.inertia);
     const double least_half_size = std::visit(
         [](const auto& shape) { return half_extents(shape, Mat4::Identity()).minCoeff(); },
         type.shape);

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/world.hpp"
@@ -141,6 +145,73 @@ TEST(Extreme, ACapsuleTenThousandTimesAsLongAsWideLiesStill) {
     // 0.005 of its radius is left alone.
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.01);
     EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.01);
+}
+
+/// How far a body dropped from 0.3 m gets below a floor at 0, and how much energy it wins.
+std::pair<double, double> sunk_and_won(const BodyType& type, const Rotor& rotor, bool on_box,
+                                       const PhysicsSettings& settings) {
+    Bodies bodies;
+    if (on_box) {
+        BodyType floor = box_type({20, 1, 20, 20});
+        floor.friction = type.friction;
+        floor.fixed_position = floor.fixed_rotation = true;
+        add(bodies, floor, {0.3, -0.5, 0.2, 0.1});
+    } else {
+        add(bodies, plane_type(Vec4::UnitY(), 0, type.friction));
+    }
+    const auto height = [&](const Rotor& r) {
+        return std::visit([&](const auto& s) { return half_extents(s, to_matrix(r))[1]; },
+                          type.shape);
+    };
+    const BodyId body =
+        add(bodies, type, {0, height(rotor) + 0.3, 0, 0}, {0.3, 0, 0.1, 0}, {}, rotor);
+    World world(bodies, settings);
+    const auto energy = [&] {
+        return kinetic_energy(world.bodies()) -
+               type.mass * kDown.dot(world.bodies().position[body]);
+    };
+    const double start = energy();
+    double most = start;
+    for (int i = 0; i < 360; ++i) {
+        world.step(kStep);
+        most = std::max(most, energy());
+    }
+    return {height(world.bodies().rotor[body]) - world.bodies().position[body][1], most - start};
+}
+
+/// Much thinner across two or three axes than along the others.
+TEST(Extreme, SlenderBodiesLandAndStay) {
+    const Rotor turned = exp(Bivector{0.1, 0.2, 0, 0.1, 0.05, 0.3});
+    for (const PhysicsSettings& settings : {impulse(), soft_settings()})
+        for (const double thin : {1e-4, 1e-5, 1e-6, 1e-9})
+            for (const double friction : {0.0, 0.5})
+                for (const bool on_box : {false, true}) {
+                    const std::pair<BodyType, Rotor> bodies[] = {
+                        {box_type({1, thin, thin, 1}), {}},
+                        {box_type({1, 1, thin, thin}), turned},
+                        {box_type({1, thin, 1, 1}), {}},
+                        {capsule_type(thin, 1), exp(Bivector{0.25 * pi})}};
+                    for (auto [type, rotor] : bodies) {
+                        type.friction = friction;
+                        const auto [sunk, won] = sunk_and_won(type, rotor, on_box, settings);
+                        // Less than it falls in the step in which it lands (1.7 mm were seen).
+                        EXPECT_LT(sunk, std::sqrt(2 * 10 * 0.3) * kStep)
+                            << thin << " m " << friction << " " << on_box;
+                        EXPECT_LT(won, 1e-9) << thin << " m " << friction << " " << on_box;
+                    }
+                }
+}
+
+TEST(Extreme, InertiaIsThatOfTheShapeDownToAspectsOfAThousand) {
+    const double thin = 1e-3;
+    Bodies bodies;
+    add(bodies, box_type({1, thin, thin, 1}, 3));
+    add(bodies, box_type({1, 1e-7, 1e-7, 1}, 3));
+    const auto types = type_properties(bodies);
+    const Vec4 moments = second_moments(Hyperbox{{1, thin, thin, 1}}, 3);
+    EXPECT_EQ(types[0].inertia.yz, moments[1] + moments[2]);
+    EXPECT_EQ(types[0].inertia.xw, moments[0] + moments[3]);
+    EXPECT_NEAR(types[1].inertia.yz, kLeastInertia * 3 * 0.5, 1e-20);
 }
 
 }  // namespace
