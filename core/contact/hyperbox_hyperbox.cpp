@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t kFaces = 81;
 
+/// The vertices of the contact solid under a cell of either box.
 void find_under_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double margin,
                      BoxPoints& points) {
     if (!of_b) return clip_cell(pair, axis, margin, points);

@@ -19,7 +19,7 @@ void contacts_between(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b, 
                       double margin, PairContacts& out);
 
 /// The points under one cell of one box, whichever features are closest: at most 8, ascending by
-/// feature, each with its separation along the cell's normal; none where the cell has none.
+/// feature, each with its separation along the cell's normal; none where nothing is over the cell.
 /// @param face_of_b   the cell is b's, otherwise a's
 /// @param outward     near the cell's normal, world
 void contacts_over_face(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b,
