@@ -96,7 +96,7 @@ void World::find_contacts(Schedule& schedule) {
         if (look) schedule.choose_pairs(simulation_, step_);
     }
     if (simulation_.needs.seams) seams_.correct(simulation_, step_, schedule);
-    begin_contacts(step_);
+    begin_contacts(simulation_, step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain,
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
 }
@@ -135,13 +135,17 @@ void World::advance_second_half(Schedule& schedule) {
 void World::relax_islands(Schedule& schedule) {
     const Observed stage(*this, Stage::kRelaxIslands, step_.islands.size());
     schedule.relax_islands(simulation_, step_);
-    pushing_.collect([&](std::size_t count, std::size_t grain,
-                         const auto& work) { schedule.for_each_range(count, grain, work); },
-                     step_.impulses.size(), kContactGrain,
-                     [&](Range contacts, std::vector<ContactImpulse>& list) {
-                         list_pushing(step_, contacts, list);
-                     },
-                     step_.pushing);
+    const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
+        schedule.for_each_range(count, grain, work);
+    };
+    pushing_.collect(
+        for_each_range, step_.impulses.size(), kContactGrain,
+        [&](Range contacts, auto& list) { list_pushing(step_, contacts, list); }, step_.pushing);
+    if (simulation_.needs.rolling)
+        pushing_angular_.collect(
+            for_each_range, step_.impulses.size(), kContactGrain,
+            [&](Range contacts, auto& list) { list_pushing_angular(step_, contacts, list); },
+            step_.pushing_angular);
     end_substep(simulation_, step_);
 }
 

@@ -55,6 +55,7 @@ class World {
     ChunkedList<Contact> contacts_;
     Seams seams_;
     ChunkedList<ContactImpulse> pushing_;
+    ChunkedList<Bivector> pushing_angular_;
     StageObserver* observer_ = nullptr;
 };
 

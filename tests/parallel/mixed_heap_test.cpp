@@ -90,6 +90,27 @@ TEST(Seams, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     expect_serial_bits(bodies, {}, 80, serial, {1, 2, 4});
 }
 
+Bodies with_rolling_friction(Bodies bodies) {
+    for (BodyType& type : bodies.types) type.rolling_friction = 0.02;
+    return bodies;
+}
+
+TEST(RollingFriction, HasTheBitsOfTheSerialWorldInSmallAndLargeIslands) {
+    PhysicsSettings sleepy;
+    sleepy.sleeping = true;
+    const Bodies small = with_rolling_friction(mixed_heap());
+    World serial(small, sleepy);
+    for (int i = 0; i < 80; ++i) serial.step(1.0 / 80);
+    expect_serial_bits(small, sleepy, 80, serial, {1, 2, 4});
+
+    Bodies large = with_rolling_friction(mixed_heap(6 * 6 * 6 * 4, 6));
+    for (BodyId id = 7; id < large.size(); ++id) large.position[id] *= 0.4;
+    World packed(large, soft());
+    for (int i = 0; i < 2; ++i) packed.step(1.0 / 80);
+    EXPECT_GT(packed.memory().impulses.size(), kColouredFrom);
+    expect_serial_bits(large, soft(), 2, packed, {1, 2, 4});
+}
+
 /// One island, with enough contacts to be coloured.
 TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     const Bodies bodies = packed_spheres([](int i) { return sphere_type(0.5, 1 + i % 3, 0.5); });

@@ -6,6 +6,7 @@
 #include "core/dynamics/solver/coloured_kernels.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/solver/lanes.hpp"
+#include "core/dynamics/solver/rolling_row.hpp"
 
 namespace tesserae::lanes {
 
@@ -51,6 +52,31 @@ inline float float_friction(const Simulation& simulation, const Contact& c) {
     return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), kLargestFloatFriction));
 }
 
+inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
+    const std::array<double, 6> planes = {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw};
+    for (std::size_t i = 0; i < 6; ++i) to[i].lane[lane] = static_cast<float>(planes[i]);
+}
+inline Bivector bivector_in_lane(const std::array<Eight, 6>& from, std::size_t lane) {
+    return {from[0].lane[lane], from[1].lane[lane], from[2].lane[lane],
+            from[3].lane[lane], from[4].lane[lane], from[5].lane[lane]};
+}
+
+inline float float_rolling_arm(const Simulation& simulation, const Contact& c) {
+    return static_cast<float>(
+        std::min(rolling_arm_of(simulation, c.a, c.b), kLargestFloatFriction));
+}
+/// How body b turns against a at the start, and the angular impulse to start from.
+inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
+                        std::array<Eight, 6>& turning) {
+    const Contact& c = stage.step.contacts[index];
+    put(stage.step.angular_velocity[c.b] - stage.step.angular_velocity[c.a], lane, turning);
+}
+inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
+                                std::array<Eight, 6>& impulse) {
+    if (stage.cause == Cause::kBlow) return;
+    put((1 / stage.mass_unit) * stage.step.angular_impulses[index], lane, impulse);
+}
+
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
                                                const EightPoints::Fours& fours) {
@@ -94,8 +120,8 @@ template <class F>
 }
 
 /// The nearest of length at most `most`; zero stays zero.
-template <class F>
-[[gnu::always_inline]] inline LaneVec4<F> clamped(const LaneVec4<F>& impulse, F most) {
+template <class F, template <class> class Impulse>
+[[gnu::always_inline]] inline Impulse<F> clamped(const Impulse<F>& impulse, F most) {
     const F squared = dot(impulse, impulse);
     const F scale = squared > most * most ? most / square_root(squared) : F{} + 1.0f;
     return scale * impulse;

@@ -20,7 +20,46 @@ template <class F>
     b.angular_velocity = b.angular_velocity - (b.inverse_inertia * arm_b) * moment;
 }
 
-template <bool kFriction, class F>
+/// An angular impulse, of which rolling and twisting may each have so much.
+template <class F>
+[[gnu::always_inline]] inline LaneBivector<F> clamped_parts(const LaneVec4<F>& n,
+                                                            const LaneBivector<F>& impulse,
+                                                            F most) {
+    const LaneBivector<F> rolling = wedge(n, velocity_at(impulse, n));
+    return clamped<F>(rolling, most) + clamped<F>(impulse - rolling, most);
+}
+
+template <class F>
+[[gnu::always_inline]] inline void start_rolling(const Lane<F>& lane, const LaneVec4<F>& n,
+                                                 F normal_impulse, RoundRolling& rolling,
+                                                 Motion<F>& a, Motion<F>& b) {
+    const F response = a.inverse_inertia + b.inverse_inertia;
+    lane.store(response > F{} ? (F{} + 1.0f) / response : F{}, rolling.mass);
+    const LaneBivector<F> impulse =
+        clamped_parts(n, load(lane, rolling.impulse), lane.load(rolling.arm) * normal_impulse);
+    store(lane, impulse, rolling.impulse);
+    a.angular_velocity = a.angular_velocity - a.inverse_inertia * impulse;
+    b.angular_velocity = b.angular_velocity + b.inverse_inertia * impulse;
+}
+
+/// solve_rolling_row(): the response is the same about every plane, so that both parts can be
+/// taken at once and each from the impulse that ends its turning, clamped.
+template <class F>
+[[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const LaneVec4<F>& n,
+                                                 F normal_impulse, RoundRolling& rolling,
+                                                 Motion<F>& a, Motion<F>& b) {
+    const LaneBivector<F> turning =
+        load(lane, rolling.turning) + (b.angular_velocity - a.angular_velocity);
+    const LaneBivector<F> old = load(lane, rolling.impulse);
+    const LaneBivector<F> impulse = clamped_parts(n, old - lane.load(rolling.mass) * turning,
+                                                  lane.load(rolling.arm) * normal_impulse);
+    store(lane, impulse, rolling.impulse);
+    const LaneBivector<F> change = impulse - old;
+    a.angular_velocity = a.angular_velocity - a.inverse_inertia * change;
+    b.angular_velocity = b.angular_velocity + b.inverse_inertia * change;
+}
+
+template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline void start_batch(const ColouredStage& stage, const Lane<F>& lane,
                                                const EightPoints& points, std::uint32_t batch) {
     ColouredIslands& coloured = stage.step.coloured;
@@ -51,6 +90,8 @@ template <bool kFriction, class F>
         turn(n, tangent, arm_a, arm_b, a, b);
         impulse = impulse + tangent;
     }
+    if constexpr (kRolling)
+        start_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     apply(impulse, a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
@@ -58,7 +99,7 @@ template <bool kFriction, class F>
 
 /// The normal first and then friction, as solve_row() does: the response is the same along every
 /// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
-template <bool kFriction, class F>
+template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline F solve_batch(const ColouredStage& stage, const Lane<F>& lane,
                                             std::uint32_t batch, Sweep sweep) {
     ColouredIslands& coloured = stage.step.coloured;
@@ -87,13 +128,15 @@ template <bool kFriction, class F>
         turn(n, tangent_change, arm_a, arm_b, a, b);
         impulse = impulse + tangent_change;
     }
+    if constexpr (kRolling)
+        solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     apply(impulse, a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
     return sweep.measured ? velocity_left(lane, row.along, change) : F{};
 }
 
-template <bool kFriction>
+template <bool kFriction, bool kRolling>
 void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
     const Simulation& simulation = stage.simulation;
     ColouredIslands& coloured = stage.step.coloured;
@@ -101,23 +144,30 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
         const Batch& batch = coloured.round[i];
         EightPoints points;
         if constexpr (kFriction) coloured.round_friction[i].friction = {};
+        if constexpr (kRolling) coloured.round_rolling[i] = {};
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
             put_point(stage, batch.contact[k], k, points);
             const Contact& c = stage.step.contacts[batch.contact[k]];
             if constexpr (kFriction)
                 coloured.round_friction[i].friction.lane[k] = float_friction(simulation, c);
+            if constexpr (kRolling) {
+                RoundRolling& rolling = coloured.round_rolling[i];
+                rolling.arm.lane[k] = float_rolling_arm(simulation, c);
+                put_turning(stage, batch.contact[k], k, rolling.turning);
+                put_angular_impulse(stage, batch.contact[k], k, rolling.impulse);
+            }
         }
         for_lanes({i, i + 1}, lanes, false, [&](const auto& lane, std::uint32_t) {
-            start_batch<kFriction>(stage, lane, points, i);
+            start_batch<kFriction, kRolling>(stage, lane, points, i);
         });
     }
 }
 
-template <bool kFriction>
+template <bool kFriction, bool kRolling>
 double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
     float most = 0;
     for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
-        const auto left = solve_batch<kFriction>(stage, lane, batch, sweep);
+        const auto left = solve_batch<kFriction, kRolling>(stage, lane, batch, sweep);
         if (sweep.measured) most = std::max(most, largest_lane(left));
     });
     return most;
@@ -126,13 +176,17 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
 }  // namespace
 
 void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
-    return stage.step.coloured.friction ? start_all<true>(stage, batches, lanes)
-                                        : start_all<false>(stage, batches, lanes);
+    const ColouredIslands& coloured = stage.step.coloured;
+    if (coloured.rolling) return start_all<true, true>(stage, batches, lanes);
+    return coloured.friction ? start_all<true, false>(stage, batches, lanes)
+                             : start_all<false, false>(stage, batches, lanes);
 }
 
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
-    return stage.step.coloured.friction ? sweep_all<true>(stage, batches, sweep, lanes)
-                                        : sweep_all<false>(stage, batches, sweep, lanes);
+    const ColouredIslands& coloured = stage.step.coloured;
+    if (coloured.rolling) return sweep_all<true, true>(stage, batches, sweep, lanes);
+    return coloured.friction ? sweep_all<true, false>(stage, batches, sweep, lanes)
+                             : sweep_all<false, false>(stage, batches, sweep, lanes);
 }
 
 void keep_round(const ColouredStage& stage, BatchRange batches) {
@@ -152,6 +206,9 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
             for (int axis = 0; axis < 4; ++axis)
                 impulse.tangent[axis] =
                     stage.mass_unit * coloured.round_friction[i].impulse[axis].lane[k];
+            if (coloured.rolling)
+                stage.step.angular_impulses[batch.contact[k]] =
+                    stage.mass_unit * bivector_in_lane(coloured.round_rolling[i].impulse, k);
         }
     }
 }

@@ -123,6 +123,10 @@ struct LaneBivector {
     }
 };
 template <class F>
+[[gnu::always_inline]] inline F dot(const LaneBivector<F>& a, const LaneBivector<F>& b) {
+    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5]);
+}
+template <class F>
 [[gnu::always_inline]] inline LaneBivector<F> wedge(const LaneVec4<F>& a, const LaneVec4<F>& b) {
     return {a[0] * b[1] - a[1] * b[0], a[0] * b[2] - a[2] * b[0], a[0] * b[3] - a[3] * b[0],
             a[1] * b[2] - a[2] * b[1], a[1] * b[3] - a[3] * b[1], a[2] * b[3] - a[3] * b[2]};
@@ -144,6 +148,17 @@ template <class F, std::size_t kCount>
 [[gnu::always_inline]] inline void store(const Lane<F>& lane, const LaneVec4<F>& x,
                                          std::array<Eight, kCount>& to) {
     for (std::size_t i = 0; i < kCount; ++i) lane.store(x[i], to[i]);
+}
+template <class F>
+[[gnu::always_inline]] inline LaneBivector<F> load(const Lane<F>& lane,
+                                                   const std::array<Eight, 6>& from) {
+    return {lane.load(from[0]), lane.load(from[1]), lane.load(from[2]),
+            lane.load(from[3]), lane.load(from[4]), lane.load(from[5])};
+}
+template <class F>
+[[gnu::always_inline]] inline void store(const Lane<F>& lane, const LaneBivector<F>& x,
+                                         std::array<Eight, 6>& to) {
+    for (std::size_t i = 0; i < 6; ++i) lane.store(x[i], to[i]);
 }
 /// The first three, and 0.
 template <class F>

@@ -7,6 +7,7 @@
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
+#include "core/dynamics/solver/rolling_row.hpp"
 
 namespace tesserae {
 namespace {
@@ -64,34 +65,43 @@ double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) 
     return change;
 }
 
+/// Where there is rolling friction.
+RollingRow& rolling_row_of(StepData& step, const ContactRow& row) {
+    return step.rolling_rows[static_cast<std::size_t>(&row - step.rows.data())];
+}
+
 /// @return the largest change of a normal velocity [m/s] if it is measured, else 0
-template <NormalPass ContactRow::*kPass, bool kTurning>
+template <NormalPass ContactRow::*kPass, bool kTurning, bool kRolling>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
     double residual = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
         const double change = solve_row<kPass, kTurning>(simulation, step, row);
+        if constexpr (kRolling) solve_rolling_row(simulation, step, row, rolling_row_of(step, row));
         if (sweep.measured && change != 0)
             residual = std::max(residual, std::abs(change) / row.relax.mass);
     }
     return residual;
 }
 
-template <bool kTurning>
+template <bool kTurning, bool kRolling>
 double run_pass(const Simulation& simulation, StepData& step, std::span<ContactRow> rows, Pass pass,
                 const Effort& effort) {
     return iterate(pass, effort, [&](Sweep sweep) {
-        return pass == Pass::kSolve
-                   ? sweep_rows<&ContactRow::solve, kTurning>(simulation, step, rows, sweep)
-                   : sweep_rows<&ContactRow::relax, kTurning>(simulation, step, rows, sweep);
+        return pass == Pass::kSolve ? sweep_rows<&ContactRow::solve, kTurning, kRolling>(
+                                          simulation, step, rows, sweep)
+                                    : sweep_rows<&ContactRow::relax, kTurning, kRolling>(
+                                          simulation, step, rows, sweep);
     });
 }
 
 double run_pass(const Simulation& simulation, StepData& step, std::span<ContactRow> rows, Pass pass,
                 const Effort& effort) {
-    return simulation.needs.turning ? run_pass<true>(simulation, step, rows, pass, effort)
-                                    : run_pass<false>(simulation, step, rows, pass, effort);
+    const Needs& needs = simulation.needs;
+    if (needs.rolling) return run_pass<true, true>(simulation, step, rows, pass, effort);
+    return needs.turning ? run_pass<true, false>(simulation, step, rows, pass, effort)
+                         : run_pass<false, false>(simulation, step, rows, pass, effort);
 }
 
 /// The impulses that the rows start from.
@@ -102,6 +112,9 @@ void apply_recalled(const Simulation& simulation, StepData& step, std::span<Cont
             apply_impulse<true>(simulation, step, row, impulse);
         else
             apply_impulse<false>(simulation, step, row, impulse);
+        if (simulation.needs.rolling)
+            apply_angular_impulse(simulation, step, row.a, row.b,
+                                  angular_impulse_of(row, rolling_row_of(step, row)));
     }
 }
 
@@ -123,7 +136,14 @@ void start_rows(const Simulation& simulation, StepData& step, std::size_t island
         if (!made) *row = make_row(simulation, step, contact);
         const ContactImpulse start =
             cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, *row++);
+        start_row(simulation, step, contact, start, cause, *row);
+        if (simulation.needs.rolling) {
+            RollingRow& rolling = rolling_row_of(step, *row);
+            if (!made) rolling = make_rolling_row(simulation, step, *row);
+            start_rolling_row(
+                *row, cause == Cause::kLoad ? step.angular_impulses[index] : Bivector{}, rolling);
+        }
+        ++row;
     }
     step.has_rows[island] = 1;
 }
@@ -146,12 +166,15 @@ void keep_hits(StepData& step, std::size_t island) {
         step.hit[contact] = (row++)->normal_impulse > 0;
 }
 
-void keep_impulses(StepData& step, std::size_t island) {
+void keep_impulses(const Simulation& simulation, StepData& step, std::size_t island) {
     const ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t contact : contacts_of(step, island)) {
         ContactImpulse& impulse = step.impulses[contact];
         impulse.normal = row->normal_impulse;
-        impulse.tangent = (row++)->tangent_impulse;
+        impulse.tangent = row->tangent_impulse;
+        if (simulation.needs.rolling)
+            step.angular_impulses[contact] = angular_impulse_of(*row, rolling_row_of(step, *row));
+        ++row;
     }
 }
 
@@ -194,7 +217,7 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
     if (simulation.settings.solver == Solver::kSoft)
         step.residual[island] = run_pass(simulation, step, rows_of(step, island), Pass::kRelax,
                                          effort_of_load(simulation));
-    keep_impulses(step, island);
+    keep_impulses(simulation, step, island);
 }
 
 }  // namespace tesserae

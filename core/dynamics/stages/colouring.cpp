@@ -48,6 +48,7 @@ bool fit_floats(std::span<const TypeProperties> types) {
 void Colouring::begin(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     coloured.friction = simulation.needs.friction;
+    coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
     coloured.first_body.assign(1, 1);
     coloured.first_colour.assign(1, 0);
@@ -103,6 +104,10 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     if (!coloured.friction) return;
     coloured.round_friction.resize(coloured.round.size());
     coloured.general_friction.resize(coloured.general_rows);
+    if (!coloured.rolling) return;
+    coloured.round_rolling.resize(coloured.round.size());
+    coloured.pair_rolling.resize(coloured.general.size());
+    coloured.general_rolling.resize(coloured.general_rows);
 }
 
 std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, BodyId id) {

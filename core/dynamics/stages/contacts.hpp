@@ -14,10 +14,10 @@ void find_contacts(const Simulation& simulation, const StepData& step, Range pai
                    std::vector<Contact>& list);
 
 /// Sizes the sub-step's arrays of contacts, once these are known.
-void begin_contacts(StepData& step);
+void begin_contacts(const Simulation& simulation, StepData& step);
 
-/// step.impulses of the contacts in the range: what the last sub-step left for the same
-/// (a, b, feature), else zero.
+/// step.impulses (and angular ones) of the contacts in the range: what the last sub-step left for
+/// the same (a, b, feature), else zero.
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts);
 
 }  // namespace tesserae

@@ -29,6 +29,23 @@ StepReport report_of(const StepData& step) {
     return report;
 }
 
+/// As end_substep() does with the impulses themselves, which are the last ones still.
+void merge_angular_impulses(const Simulation& simulation, StepData& step) {
+    const std::vector<ContactImpulse>& last = last_impulses(simulation, step);
+    const std::vector<Bivector>& last_angular = last_angular_impulses(simulation, step);
+    std::vector<Bivector>& all = step.merged_angular;
+    all.clear();
+    std::size_t own = 0;
+    for (std::size_t i = 0; i < last.size(); ++i) {
+        if (!is_asleep(step, last[i].a) && !is_asleep(step, last[i].b)) continue;
+        for (; own < step.pushing.size() && key_of(step.pushing[own]) < key_of(last[i]); ++own)
+            all.push_back(step.pushing_angular[own]);
+        all.push_back(last_angular[i]);
+    }
+    for (; own < step.pushing.size(); ++own) all.push_back(step.pushing_angular[own]);
+    step.recalled_angular.swap(all);
+}
+
 }  // namespace
 
 LeftFiniteRange::LeftFiniteRange(BodyId id, double t)
@@ -106,11 +123,18 @@ void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpul
         if (step.impulses[i].normal > 0) list.push_back(step.impulses[i]);
 }
 
+void list_pushing_angular(const StepData& step, Range contacts, std::vector<Bivector>& list) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
+        if (step.impulses[i].normal > 0) list.push_back(step.angular_impulses[i]);
+}
+
 void end_substep(const Simulation& simulation, StepData& step) {
     if (step.asleep.empty()) {
         step.recalled.swap(step.pushing);
+        step.recalled_angular.swap(step.pushing_angular);
         return;
     }
+    if (simulation.needs.rolling) merge_angular_impulses(simulation, step);
     // Merge. The last impulses may be step.recalled, so that the list is another one.
     std::vector<ContactImpulse>& all = step.merged_impulses;
     all.clear();
@@ -151,6 +175,7 @@ StepReport commit_step(Simulation& simulation, StepData& step) {
     StepMemory& memory = simulation.memory;
     memory.time += step.dt;
     std::swap(memory.impulses, step.recalled);
+    std::swap(memory.angular_impulses, step.recalled_angular);
     if (simulation.settings.sleeping) fall_asleep(simulation, step);
     std::swap(memory.asleep, step.asleep);
     std::swap(simulation.bodies.position, step.position);

@@ -30,6 +30,8 @@ void require_finite(const Simulation& simulation, const StepData& step);
 
 /// Appends those of step.impulses in the range that are > 0.
 void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpulse>& list);
+/// The same of step.angular_impulses.
+void list_pushing_angular(const StepData& step, Range contacts, std::vector<Bivector>& list);
 
 /// Keeps step.pushing for the next sub-step, beside the impulses of bodies that sleep.
 void end_substep(const Simulation& simulation, StepData& step);

@@ -14,6 +14,7 @@ struct BodyType {
     Shape shape;
     double mass = 1;              ///< [kg]; unused for unbounded shapes
     double friction = 0.5;        ///< >= 0; a pair uses the geometric mean
+    double rolling_friction = 0;  ///< [m], >= 0; a pair uses the larger, if it has friction
     double restitution = 0;       ///< 0 to 1; a pair uses the larger
     bool fixed_position = false;  ///< contacts do not change its velocity (it moves at it)
     bool fixed_rotation = false;  ///< contacts do not change its angular velocity

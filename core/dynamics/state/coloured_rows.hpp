@@ -65,6 +65,14 @@ struct RoundFriction {
     std::array<Eight, 4> impulse;  ///< on b
 };
 
+/// All planes' parts are bivectors in the order of everywhere.
+struct RoundRolling {
+    Eight arm;                     ///< see RollingRow
+    Eight mass;                    ///< the same for rolling and twisting, about any plane
+    std::array<Eight, 6> turning;  ///< of b against a at the start [rad/s]
+    std::array<Eight, 6> impulse;  ///< on b
+};
+
 /// Of all points of each pair: the frame in which their rows are. The reflection v - (h.v) h, with
 /// |h|^2 = 2, takes the normal to g w, where g = -1 if h_w >= 0, else 1, and the tangents to x, y,
 /// z.
@@ -85,6 +93,17 @@ struct GeneralFriction {
     std::array<Eight, 3> impulse;          ///< on b
 };
 
+/// Of all points of each pair, in its frame: rolling is in xw, yw, zw, twisting in xy, xz, yz.
+struct PairRolling {
+    Eight arm;                                         ///< see RollingRow
+    std::array<Eight, 6> rolling_mass, twisting_mass;  ///< 11 12 13 22 23 33
+    Eight rolling_step, twisting_step;                 ///< see RollingPart
+    std::array<Eight, 6> turning;                      ///< of b against a at the start [rad/s]
+};
+struct GeneralRolling {
+    std::array<Eight, 6> impulse;  ///< on b
+};
+
 /// Batches begin <= i < end.
 struct BatchRange {
     std::uint32_t begin, end;
@@ -97,6 +116,7 @@ struct ColourBatches {
 /// of colours, and a row for each point of a batch.
 struct ColouredIslands {
     bool friction = false;                  ///< of any body type; else there are no such rows
+    bool rolling = false;                   ///< likewise of rolling friction
     bool turns_unevenly = false;            ///< any body is not isotropic
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
     std::vector<std::uint32_t>
@@ -112,9 +132,12 @@ struct ColouredIslands {
     std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
     std::vector<RoundRow> round_rows;               ///< of `round`
     std::vector<RoundFriction> round_friction;      ///< of `round`
+    std::vector<RoundRolling> round_rolling;        ///< likewise
     std::vector<PairFrame> frames;                  ///< of `general`
     std::vector<GeneralRow> rows;                   ///< of `general`, see Batch::row
     std::vector<GeneralFriction> general_friction;  ///< likewise
+    std::vector<PairRolling> pair_rolling;          ///< of `general`
+    std::vector<GeneralRolling> general_rolling;    ///< of `rows`
 };
 
 }  // namespace tesserae

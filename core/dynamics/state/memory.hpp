@@ -20,6 +20,9 @@ struct ContactImpulse {
 /// Saved with a trajectory so that a resumed run continues bit for bit.
 struct StepMemory {
     std::vector<ContactImpulse> impulses;  ///< ascending (a, b, feature)
+    /// Of each of `impulses` what held rolling and twisting, on b, world [N m s]; empty where there
+    /// is no rolling friction.
+    std::vector<Bivector> angular_impulses;
     /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
     /// in, or kAwake.
     std::vector<BodyId> asleep;

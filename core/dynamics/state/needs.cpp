@@ -19,6 +19,12 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
     Needs needs;
     // A pair's friction is the geometric mean, its restitution the larger one.
     needs.friction = any([](const auto& type) { return type.movable && type.friction > 0; });
+    // The larger rolling friction counts, of a pair that has friction.
+    needs.rolling =
+        any([](const auto& type) { return type.friction > 0 && type.rolling_friction > 0; }) &&
+        any([](const auto& type) {
+            return type.movable && type.friction > 0 && !(type.inverse_inertia == Bivector{});
+        });
     needs.restitution = any([](const auto& type) { return type.restitution > 0; });
     needs.uneven_inertia = any([](const auto& type) { return !type.isotropic; });
     needs.seams = std::any_of(bodies.types.begin(), bodies.types.end(), [](const BodyType& type) {

@@ -11,6 +11,8 @@ namespace tesserae {
 /// step, which then has the same result (Needs.WhatIsLeftOutWouldChangeNothing).
 struct Needs {
     bool friction = true;        ///< tangent rows: a movable body has friction
+    bool rolling = true;         ///< rows against rolling and twisting: some body has rolling
+                                 ///< friction, and friction can turn some body; needs turning
     bool restitution = true;     ///< rebounds: a body has restitution
     bool uneven_inertia = true;  ///< 6x6 inertia: some movable body's depends on the direction
     bool seams = true;           ///< faces that may lie in one plane: a bounded body has faces

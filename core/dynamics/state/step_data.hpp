@@ -89,6 +89,19 @@ struct ContactRow {
     BodyId a = 0, b = 0;
 };
 
+/// Rolling or twisting of a contact's bodies against each other: the part of a bivector that
+/// contains the normal n, n ^ t, or its dual part, dual(n ^ t), as the tangent t.
+struct RollingPart {
+    Mat4 mass;             ///< inverse of the response in the three tangent directions [kg m^2]
+    double step_mass = 0;  ///< below the inverse of the largest of these responses [kg m^2]
+    Vec4 impulse;          ///< [N m s], orthogonal to the normal
+};
+/// What resists rolling and twisting at a contact.
+struct RollingRow {
+    double arm = 0;  ///< of the normal impulse: how far either part's impulse may go [m]
+    RollingPart rolling, twisting;
+};
+
 /// How a body moves.
 struct BodyMotion {
     Vec4 velocity = Vec4::Zero();
@@ -141,17 +154,21 @@ struct StepData {
     std::vector<Contact> contacts;  ///< ascending (a, b, feature)
     Islands islands;
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
+    std::vector<RollingRow> rolling_rows;  ///< of `rows`, where there is rolling friction
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
     std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
     std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
-    std::vector<double> residual;          ///< of every island [m/s]
-    std::vector<BodyId> asleep;            ///< as in StepMemory, as of now
-    std::vector<ContactSums> sums;         ///< of every piece of kReportPiece contacts
+    /// Of `impulses`, `pushing` and `recalled`, where there is rolling friction; see StepMemory.
+    std::vector<Bivector> angular_impulses, pushing_angular, recalled_angular;
+    std::vector<double> residual;   ///< of every island [m/s]
+    std::vector<BodyId> asleep;     ///< as in StepMemory, as of now
+    std::vector<ContactSums> sums;  ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
     std::vector<ContactImpulse> merged_impulses;
+    std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
     std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, likewise
@@ -168,6 +185,12 @@ auto key_of(const ContactOrImpulse& c) {
 inline const std::vector<ContactImpulse>& last_impulses(const Simulation& simulation,
                                                         const StepData& step) {
     return step.substep == 0 ? simulation.memory.impulses : step.recalled;
+}
+
+/// Of them.
+inline const std::vector<Bivector>& last_angular_impulses(const Simulation& simulation,
+                                                          const StepData& step) {
+    return step.substep == 0 ? simulation.memory.angular_impulses : step.recalled_angular;
 }
 
 /// What an angular impulse [N m s, world] does to the angular velocity of a body in this sub-step:

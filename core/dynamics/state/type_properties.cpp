@@ -22,6 +22,7 @@ Bivector at_least(double least, const Bivector& b) {
 TypeProperties properties_of(const BodyType& type) {
     TypeProperties p;
     p.friction = type.friction;
+    p.rolling_friction = type.rolling_friction;
     p.restitution = type.restitution;
     p.slop = std::numeric_limits<double>::infinity();
     p.bounded = is_bounded(type.shape);

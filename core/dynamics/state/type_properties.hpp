@@ -24,6 +24,7 @@ struct TypeProperties {
                            ///< 0 for a hypersphere, whose turning moves no surface
     double slop = 0;       ///< allowed overlap [m]; infinite if unbounded
     double friction = 0;
+    double rolling_friction = 0;  ///< [m]
     double restitution = 0;
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -129,21 +131,52 @@ TEST(Sleeping, WhatNothingCarriesFliesOn) {
     for (const BodyId id : {2u, 3u}) EXPECT_NEAR(now.position[id][2], 0.05 * 2, 1e-12);
 }
 
+/// Balls on a slope, which only rolling friction holds: those that a hit wakes are held as before.
+TEST(Sleeping, KeepsWhatHoldsRolling) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4(0.08, 1, 0, 0).normalized(), 0, 0.5));
+    bodies.types[0].rolling_friction = 0.05;
+    const Vec4 up = 0.5 * Vec4(0.08, 1, 0, 0).normalized();
+    for (int i = 0; i < 6; ++i) add(bodies, sphere_type(0.5, 1, 0.5), up + Vec4(0, 0, 3 * i, 0));
+    // Falls on the fourth after 1.2 s.
+    add(bodies, sphere_type(0.2, 0.1, 0.5), {0.1, 8.2, 9, 0.05});
+    World world(bodies, sleepy());
+    run(world, 240);
+    const StepMemory before = world.memory();
+    ASSERT_EQ(before.asleep[4], 4u);
+    ASSERT_EQ(before.angular_impulses.size(), 6u);
+    // R m g sin of a sub-step, about the point of contact.
+    const double torque = 0.5 * 10 * 0.08 / std::sqrt(1 + 0.08 * 0.08);
+    for (const Bivector& held : before.angular_impulses)
+        EXPECT_NEAR(norm(held), torque * kStep, 1e-4 * torque * kStep);
+    run(world, 120);
+    const StepMemory& after = world.memory();
+    EXPECT_EQ(after.asleep[4], kAwake);
+    ASSERT_EQ(after.angular_impulses.size(), after.impulses.size());
+    for (const std::size_t i : {0, 1, 2, 4, 5}) {
+        EXPECT_EQ(after.impulses[i].b, i + 1);
+        EXPECT_EQ(after.angular_impulses[i], before.angular_impulses[i]) << i;
+        EXPECT_TRUE(world.bodies().velocity[i + 1].isZero());
+    }
+}
+
 TEST(Sleeping, ContinuesBitForBitFromItsBodiesAndMemory) {
     Bodies bodies = two_stacks();
     for (BodyId id = 1; id < bodies.size(); ++id)  // of uneven inertia, which turns with them
         bodies.types[bodies.type[id]].shape = Hyperbox{{1.2, 1, 0.8, 1}};
     add(bodies, sphere_type(0.3, 5, 0.2), {0.1, 14, 0.1, 0.1});
-    for (const int before : {60, 200, 380}) {
-        World world(bodies, sleepy());
-        run(world, before);
-        World resumed(world.bodies(), sleepy());
-        resumed.memory() = world.memory();
-        run(world, 200);
-        run(resumed, 200);
-        EXPECT_TRUE(same_bits(world.bodies(), resumed.bodies())) << before;
-        EXPECT_TRUE(same_values(world.memory(), resumed.memory())) << before;
-    }
+    for (const double rolling_friction : {0.0, 0.02})
+        for (const int before : {60, 200, 380}) {
+            for (BodyType& type : bodies.types) type.rolling_friction = rolling_friction;
+            World world(bodies, sleepy());
+            run(world, before);
+            World resumed(world.bodies(), sleepy());
+            resumed.memory() = world.memory();
+            run(world, 200);
+            run(resumed, 200);
+            EXPECT_TRUE(same_bits(world.bodies(), resumed.bodies())) << before;
+            EXPECT_TRUE(same_values(world.memory(), resumed.memory())) << before;
+        }
 }
 
 }  // namespace

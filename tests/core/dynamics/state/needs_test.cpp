@@ -57,6 +57,27 @@ TEST(Needs, AreThoseOfTheBodies) {
     expect(with(held_box, {1, 0, 0, 0, 0, 0}), false, false, false, true, "a driven box");
 }
 
+TEST(Needs, RollingFrictionNeedsFrictionAndWhatCanTurn) {
+    const auto rolling = [](double floor_friction, double floor_rolling, BodyType type,
+                            double friction, double rolling_friction) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, floor_friction));
+        bodies.types[0].rolling_friction = floor_rolling;
+        type.friction = friction, type.rolling_friction = rolling_friction;
+        add(bodies, type, Vec4::UnitY());
+        return needs_of(bodies).rolling;
+    };
+    BodyType held = box_type(Vec4::Ones());
+    held.fixed_rotation = true;
+    EXPECT_FALSE(rolling(0.5, 0, sphere_type(1), 0.5, 0));
+    EXPECT_TRUE(rolling(0.5, 0, sphere_type(1), 0.5, 1e-300));
+    EXPECT_TRUE(rolling(0.5, 1e-300, sphere_type(1), 0.5, 0)) << "the larger counts";
+    EXPECT_FALSE(rolling(0, 0.1, sphere_type(1), 0.5, 0)) << "that floor has no friction";
+    EXPECT_FALSE(rolling(0.5, 0.1, sphere_type(1), 0, 0.1)) << "no friction turns this sphere";
+    EXPECT_FALSE(rolling(0.5, 0.1, box_type(Vec4::Ones()), 0, 0.1));
+    EXPECT_FALSE(rolling(0.5, 0.1, held, 0.5, 0.1)) << "it cannot turn";
+}
+
 /// All steps with every part against those with what was decided: the parts left out add zeros.
 TEST(Needs, WhatIsLeftOutWouldChangeNothing) {
     for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
