@@ -127,6 +127,8 @@ std::vector<Case> all_cases() {
     return {
         {"friction", "friction", kStep, 240, heap(held + rubs), heap(held + kSmooth)},
         {"friction_and_rotors", "friction", kStep, 240, heap(kSphere + rubs), heap(smooth)},
+        {"rolling_friction", "rolling friction", kStep, 240,
+         heap(kSphere + "rolling_friction = 1e-9\n"), heap(kSphere)},
         {"rotors_of_all", "rotors and angular velocities", kStep, 10, gas(spin), gas("")},
         {"rotors_of_one", "rotors and angular velocities", kStep, 240,
          heap(smooth, body(smooth_alone + spin)), heap(smooth, body(smooth_alone))},

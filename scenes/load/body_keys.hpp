@@ -129,6 +129,7 @@ void mass_keys(auto& self, const auto& visit) {
 /// [[body]] and [[lattice]]: how they touch and look
 void surface_keys(auto& self, const auto& visit, const MaterialNumbers& materials) {
     visit("friction", self.type.friction, Rule::kNonNegative);
+    visit("rolling_friction", self.type.rolling_friction, NonNegativeOrUnwritten{});
     visit("restitution", self.type.restitution, Interval{0, 1});
     visit("fixed", self.type, Flags<BodyType>{kFixed});
     visit("material", self.material, MaterialName{materials});

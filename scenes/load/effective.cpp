@@ -88,6 +88,12 @@ class Walker {
     bool at_end_ = false;
 };
 
+/// `a` has a key before what `b` goes on with: one that is written only where it is set.
+bool has_one_more(Walker a, const Walker& b) {
+    a.next();
+    return a.key().empty() ? a.line() == b.line() : a.key() == b.key();
+}
+
 /// The first line in which two texts differ; empty if they are equal.
 std::string difference(Walker a, Walker b) {
     while (!a.at_end() && !b.at_end() && a.line() == b.line()) a.next(), b.next();
@@ -95,6 +101,10 @@ std::string difference(Walker a, Walker b) {
     const auto shown = [](const Walker& w) {
         return w.at_end() ? std::string("nothing") : printable(w.line());
     };
+    if (!a.key().empty() && a.key() != b.key() && has_one_more(a, b))
+        return fmt::format("{}: {} there, nothing here", a.where(), shown(a));
+    if (!b.key().empty() && a.key() != b.key() && has_one_more(b, a))
+        return fmt::format("{}: nothing there, {} here", b.where(), shown(b));
     if (a.at_end() || b.at_end() || a.key().empty() || a.key() != b.key())
         return fmt::format("{}: {} there, {} here", a.at_end() ? b.where() : a.where(), shown(a),
                            shown(b));

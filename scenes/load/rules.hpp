@@ -56,6 +56,16 @@ struct WriteKeys {
     }
 };
 
+/// Not written where it is 0: a key that is younger than scenes whose hashes stay.
+struct NonNegativeOrUnwritten {
+    void read(TableReader& reader, const char* key, double& value) const {
+        reader.read(key, value, Rule::kNonNegative);
+    }
+    void write(EffectiveWriter& out, const char* key, double value) const {
+        if (value != 0) out.key(key, value);
+    }
+};
+
 /// A value of an enumeration; the names are in its order.
 struct Names {
     std::span<const std::string_view> names;

@@ -55,6 +55,8 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                    Plan& plan) {
     plan.decide("friction", needs.friction, "contacts have tangent rows",
                 "friction = 0 of all that moves: contacts have no tangent rows");
+    plan.decide("rolling friction", needs.rolling, "contacts resist rolling and twisting",
+                "no rolling_friction at contacts with friction of what can turn");
     plan.decide("restitution", needs.restitution, "contacts may rebound",
                 "restitution = 0 everywhere: nothing rebounds");
     plan.decide("seams", needs.seams, "flush faces of several bodies are gone over as one",

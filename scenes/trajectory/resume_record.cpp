@@ -10,6 +10,8 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
+/// Of each, where there is rolling friction; files of before there was have none.
+constexpr std::size_t kAngularBytes = 6 * 8;
 constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
 /// Rows, first, hash, step, numbers of impulses and of bodies.
 constexpr std::size_t kFixedBytes = 7 * 8;
@@ -20,10 +22,18 @@ void put(std::string& bytes, const Value& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+void put(std::string& bytes, const Bivector& b) {
+    for (const double plane : {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw}) put(bytes, plane);
+}
+
 template <class Value>
 void take(std::string_view& bytes, Value& value) {
     std::memcpy(&value, bytes.data(), sizeof value);
     bytes.remove_prefix(sizeof value);
+}
+
+void take(std::string_view& bytes, Bivector& b) {
+    for (double* plane : {&b.xy, &b.xz, &b.xw, &b.yz, &b.yw, &b.zw}) take(bytes, *plane);
 }
 
 }  // namespace
@@ -31,6 +41,7 @@ void take(std::string_view& bytes, Value& value) {
 std::string to_bytes(const ResumeRecord& record) {
     std::string body;
     body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
+                 record.memory.angular_impulses.size() * kAngularBytes +
                  record.memory.asleep.size() * kBodyBytes);
     put(body, record.rows);
     put(body, record.first);
@@ -38,6 +49,8 @@ std::string to_bytes(const ResumeRecord& record) {
     put(body, record.step);
     const StepMemory& memory = record.memory;
     TSR_ASSERT(memory.asleep.size() == memory.still.size());
+    TSR_ASSERT(memory.angular_impulses.empty() ||
+               memory.angular_impulses.size() == memory.impulses.size());
     put(body, static_cast<std::uint64_t>(memory.impulses.size()));
     put(body, static_cast<std::uint64_t>(memory.asleep.size()));
     for (const ContactImpulse& impulse : memory.impulses) {
@@ -49,6 +62,7 @@ std::string to_bytes(const ResumeRecord& record) {
     }
     for (BodyId island : memory.asleep) put(body, island);
     for (double time : memory.still) put(body, time);
+    for (const Bivector& impulse : memory.angular_impulses) put(body, impulse);
     std::string bytes;
     bytes.reserve(kFrontBytes + body.size());
     put(bytes, static_cast<std::uint64_t>(body.size()));
@@ -74,9 +88,11 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     take(bytes, record.step);
     take(bytes, impulses);
     take(bytes, bodies);
-    const bool fits = impulses <= bytes.size() / kImpulseBytes &&
-                      bodies <= bytes.size() / kBodyBytes &&
-                      bytes.size() == impulses * kImpulseBytes + bodies * kBodyBytes;
+    if (impulses > bytes.size() / kImpulseBytes || bodies > bytes.size() / kBodyBytes)
+        return std::nullopt;
+    const std::uint64_t plain = impulses * kImpulseBytes + bodies * kBodyBytes;
+    const bool has_angular = bytes.size() != plain;
+    const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
     record.memory.impulses.resize(impulses);
     for (ContactImpulse& impulse : record.memory.impulses) {
@@ -90,6 +106,8 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     record.memory.still.resize(bodies);
     for (BodyId& island : record.memory.asleep) take(bytes, island);
     for (double& time : record.memory.still) take(bytes, time);
+    if (has_angular) record.memory.angular_impulses.resize(impulses);
+    for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;
 }
 

@@ -361,6 +361,9 @@ TEST(SceneHash, SeesEveryValue) {
                                "body.body-1.rotation.xy=1",
                                "body.body-1.velocity=[0,0,0,0]",
                                "body.body-1.friction=1",
+                               "body.body-1.rolling_friction=0.1",
+                               "lattice.rain.rolling_friction=0.1",
+                               "body.floor.rolling_friction=0.1",
                                "body.body-1.restitution=1",
                                "body.body-1.fixed=[]",
                                "lattice.rain.seed=1",
@@ -380,6 +383,19 @@ TEST(SceneHash, SeesEveryValue) {
         EXPECT_NE(changed(picture).hash, scene.hash) << picture;
         EXPECT_EQ(changed(picture).motion_hash, scene.motion_hash) << picture;
     }
+}
+
+TEST(Hashes, OfScenesWithoutRollingFrictionAreThoseOfBeforeThereWasAny) {
+    const Scene without = load_text(kRich),
+                zero = load_text(kRich, {"body.body-1.rolling_friction=0"});
+    EXPECT_EQ(without.effective.find("rolling_friction"), std::string::npos);
+    EXPECT_EQ(zero.effective, without.effective);
+    const Scene some = load_text(kRich, {"body.body-1.rolling_friction=0.25"});
+    EXPECT_EQ(first_motion_difference(without.effective, some.effective),
+              "body 1 \"body-1\": nothing there, rolling_friction = 0.25 here");
+    EXPECT_EQ(first_difference(some.effective, without.effective),
+              "body 1 \"body-1\": rolling_friction = 0.25 there, nothing here");
+    EXPECT_EQ(load_text(some.effective).hash, some.hash);
 }
 
 TEST(FirstDifference, NamesKeyAndValues) {

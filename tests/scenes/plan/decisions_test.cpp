@@ -163,7 +163,8 @@ TEST(PlanOfMotion, SaysWhatAStepNeeds) {
     for (const std::string& bodies :
          {ball(0), ball(0, "friction = 0"), ball(0, "restitution = 1"),
           ball(0, "friction = 0\nangular_velocity = { xw = 1 }"), box, ball(0) + box,
-          ball(0, "friction = 0\nrestitution = 0.5") + wall})
+          ball(0, "friction = 0\nrestitution = 0.5") + wall, ball(0, "rolling_friction = 0.1"),
+          ball(0, "friction = 0\nrolling_friction = 0.1")})
         for (const bool sleeps : {false, true}) {
             const Scene scene =
                 load_text("[physics]\nsleeping = " + toml_text(sleeps) + "\n" + bodies + wall);
@@ -171,6 +172,7 @@ TEST(PlanOfMotion, SaysWhatAStepNeeds) {
             const Needs& step = world.simulation().needs;
             SCOPED_TRACE(bodies);
             EXPECT_EQ(needs(scene, "friction"), step.friction);
+            EXPECT_EQ(needs(scene, "rolling friction"), step.rolling);
             EXPECT_EQ(needs(scene, "restitution"), step.restitution);
             EXPECT_EQ(needs(scene, "rotors and angular velocities"), step.turning);
             EXPECT_EQ(needs(scene, "gyroscopic term and 6x6 inertia"), step.uneven_inertia);

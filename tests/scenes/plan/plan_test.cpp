@@ -68,6 +68,10 @@ TEST(Plan, LeavesOutOfAStepWhatNoBodyHas) {
     EXPECT_TRUE(needed(smooth + body(wall + "restitution = 0.1"), "restitution"));
     EXPECT_FALSE(needed(smooth + body(wall + "friction = 0.1"), "friction"));
 
+    EXPECT_FALSE(needed(body(sphere) + body(sphere), "rolling friction"));
+    EXPECT_TRUE(needed(body(sphere) + body(wall + "rolling_friction = 0.1"), "rolling friction"));
+    EXPECT_FALSE(needed(smooth + body(wall + "rolling_friction = 0.1"), "rolling friction"));
+
     const std::string rotors = "rotors and angular velocities";
     EXPECT_FALSE(needed(smooth, rotors));
     EXPECT_TRUE(needed(smooth + body(sphere), rotors)) << "friction is 0.5 by default";

@@ -40,9 +40,9 @@ TEST(Continue, AFinishedSimulationEndsWithTheBytesOfOneStraightRun) {
     const auto scene = folder.write("heap.toml", heap_scene());
     const std::vector<std::vector<std::string>> settings = {
         {},
-        {"--store-every", "7"},
-        {"--set", "physics.sleeping=true", "--set", "physics.solver=\"soft\"", "--set",
-         "physics.substeps=3"}};
+        {"--store-every", "7", "--set", "body.floor.rolling_friction=0.02"},
+        {"--set", "body.floor.rolling_friction=0.02", "--set", "physics.sleeping=true", "--set",
+         "physics.solver=\"soft\"", "--set", "physics.substeps=3"}};
     for (const std::vector<std::string>& every : settings) {
         const auto straight = folder.file("straight.h5");
         fs::remove(straight);

@@ -80,6 +80,7 @@ TEST_F(TrajectoryContinue, EndsWithTheBytesOfOneStraightRun) {
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i)
                 EXPECT_EQ(resume->memory.impulses[i].tangent, row.memory.impulses[i].tangent);
+            EXPECT_EQ(resume->memory.angular_impulses, row.memory.angular_impulses);
             EXPECT_EQ(bodies.rotor, row.bodies.rotor);
         }
         simulate(kRows);

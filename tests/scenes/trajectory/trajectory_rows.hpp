@@ -54,6 +54,8 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
                                         static_cast<std::uint32_t>(i),
                                         normal(random),
                                         {normal(random), normal(random), 0, 1}});
+    for (std::size_t i = 0; i < (row % 3 == 0 ? made.memory.impulses.size() : 0); ++i)
+        made.memory.angular_impulses.push_back({normal(random), 1, -0.0, 0, 5e-324, 2});
     return made;
 }
 
