@@ -65,7 +65,7 @@ struct RoundFriction {
     std::array<Eight, 4> impulse;  ///< on b
 };
 
-/// All planes' parts are bivectors in the order of everywhere.
+/// Rolling and twisting of a round pair together, as bivectors.
 struct RoundRolling {
     Eight arm;                     ///< see RollingRow
     Eight mass;                    ///< the same for rolling and twisting, about any plane

@@ -86,8 +86,8 @@ TEST(RollingFriction, SlowsABallByThreeQuartersOfItsArmOverTheRadius) {
         const int steps = std::min(40 + round, static_cast<int>(stops / dt) - 1);
         ASSERT_GT(steps, 0);
         for (int i = 0; i < steps; ++i) world.step(dt);
-        // Of a step's impulses, those of a rounding of the place, 1e-16 m / dt. In float each step
-        // rounds its change of the speed by some 1e-7 of itself.
+        // A rounding of the place, 1e-16 m, is 1e-13 m/s in a step. In float each step rounds its
+        // change of the speed by some 1e-7 of itself.
         expect_slowed(ball, world.bodies(), id, steps * dt, coloured ? 1e-6 : 1e-10);
     }
 }
@@ -336,7 +336,8 @@ TEST(RollingFriction, NeverAddsEnergy) {
     EXPECT_GT(lost, 30) << "no blows";
 }
 
-/// A slow rotation by hand: a heap on a slope stays one where its balls cannot roll.
+/// A ball on eight that touch each other drives them apart where they can roll, and rests on them
+/// where they cannot.
 TEST(RollingFriction, KeepsAHeapFromFlowing) {
     const auto spread_of = [](double rolling_friction) {
         Bodies bodies;
