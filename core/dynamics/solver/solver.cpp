@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
@@ -140,6 +141,22 @@ std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
     return {first, std::unique(first, end)};
 }
 
+/// What is taken back would be along directions that have turned away: of bodies whose surface has
+/// turned by more than is left to the solver nothing is, or their energy would grow without bound.
+void leave_whirling(const Simulation& simulation, const StepData& step,
+                    std::span<ContactRow> rows) {
+    const auto whirls = [&](BodyId id) {
+        const TypeProperties& type = simulation.type_of(id);
+        return type.arm > 0 && 0.5 * step.h * type.arm * norm(step.angular_velocity[id]) >
+                                   kDeepest / kSlop * type.slop;
+    };
+    for (ContactRow& row : rows) {
+        if (!whirls(row.a) && !whirls(row.b)) continue;
+        row.relax.mass = row.slide_mass = 0;
+        row.tangent_mass.setZero();
+    }
+}
+
 void keep_hits(StepData& step, std::size_t island) {
     const ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t contact : contacts_of(step, island))
@@ -191,9 +208,12 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return relax_coloured_island(simulation, step, island, OneThread{});
-    if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] = run_pass(simulation, step, rows_of(step, island), Pass::kRelax,
-                                         effort_of_load(simulation));
+    if (simulation.settings.solver == Solver::kSoft) {
+        const std::span<ContactRow> rows = rows_of(step, island);
+        leave_whirling(simulation, step, rows);
+        step.residual[island] =
+            run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation));
+    }
     keep_impulses(step, island);
 }
 
