@@ -116,13 +116,13 @@ void Impacts::take_impacts(const Simulation& simulation, const StepData& step) {
         Candidate& candidate = candidates_[impact.candidate];
         if (candidate.time != impact.time) continue;  // looked at again since
         candidate.time = kNoImpact;
-        const auto first = static_cast<std::ptrdiff_t>(stopped_.size());
+        const std::size_t first = stopped_.size();
         for (const BodyId id : {candidate.a, candidate.b})
             if (stop_[id] == kNoImpact && can_stop(simulation, step, id)) {
                 stop_[id] = impact.time;
                 stopped_.push_back(id);
             }
-        for (auto i = first; i < static_cast<std::ptrdiff_t>(stopped_.size()); ++i) {
+        for (std::size_t i = first; i < stopped_.size(); ++i) {
             const BodyId id = stopped_[i];
             auto met = std::lower_bound(met_.begin(), met_.end(), std::pair(id, std::uint32_t{0}));
             for (; met != met_.end() && met->first == id; ++met) {
