@@ -262,6 +262,73 @@ ExtremeCase seams(std::string name, BodyType body, double friction) {
             }};
 }
 
+/// A body of 0.3 m thrown at a wall 500 times from any side, at 5 to 20 of its sizes a step,
+/// turning: how many are beyond it after 12 steps, and the most energy that any wins.
+ExtremeCase throws(std::string name, BodyType body, double thickness, double restitution) {
+    return {
+        std::move(name), [=](PhysicsSettings settings) -> Measurements {
+            constexpr int kThrows = 500;
+            settings.gravity.setZero();
+            std::mt19937_64 engine(1);
+            std::uniform_real_distribution<> part(-1, 1);
+            const auto plane = [&](double most) {
+                const Vec4 a = random_vector(engine, most), b = random_vector(engine, most);
+                return Bivector{a[0], a[1], a[2], b[0], b[1], b[2]};
+            };
+            BodyType wall = box_type({thickness, 200, 200, 200}, 1);
+            wall.fixed_position = wall.fixed_rotation = true;
+            BodyType thrown = body;
+            thrown.restitution = restitution;
+            int lost = 0;
+            double gain = 0;
+            for (int i = 0; i < kThrows; ++i) {
+                const double speed = 0.3 * 240 * (12.5 + 7.5 * part(engine));
+                Bodies bodies;
+                add(bodies, wall, Vec4::Zero());
+                add(bodies, thrown, {-0.5 - 0.01 * speed * (1 + part(engine)), 0, 0, 0},
+                    speed * (Vec4::UnitX() + random_vector(engine, 0.4)), plane(20));
+                bodies.rotor.back() = exp(plane(2));
+                World world(bodies, settings);
+                const double start = kinetic_energy(bodies);
+                for (int k = 0; k < 12; ++k) {
+                    world.step(1.0 / 240);
+                    gain = std::max(gain, kinetic_energy(world.bodies()) / start - 1);
+                }
+                lost += world.bodies().position.back()[0] > 0;
+            }
+            return {{"lost", "of 500", 1.0 * lost}, {"largest gain of energy", "relative", gain}};
+        }};
+}
+
+/// A ball 35 mm before a wall of 1 cm, struck by another at 0.8 diameters a step.
+ExtremeCase struck_before_wall() {
+    return {"ball struck 35 mm before a thin wall", [](PhysicsSettings settings) -> Measurements {
+                settings.gravity.setZero();
+                Bodies bodies;
+                BodyType wall = box_type({0.01, 4, 4, 4}, 1);
+                wall.fixed_position = wall.fixed_rotation = true;
+                add(bodies, wall, Vec4::Zero());
+                add(bodies, sphere_type(0.05, 1, 0, 1), {-0.09, 0, 0, 0});
+                add(bodies, sphere_type(0.05, 10, 0, 1), {-0.3, 0, 0, 0}, {0.08 * 240, 0, 0, 0});
+                World world(bodies, settings);
+                int lost = 0;
+                for (int k = 0; k < 24; ++k) world.step(1.0 / 240);
+                for (const BodyId id : {1, 2}) lost += world.bodies().position[id][0] > 0;
+                return {{"lost", "of 2", 1.0 * lost}};
+            }};
+}
+
+std::vector<ExtremeCase> all_throws() {
+    BodyType rod;
+    rod.shape = Hypercapsule{0.002, 0.3};
+    rod.mass = 1, rod.friction = 0.5;
+    const BodyType slab = box_type({0.3, 0.3, 0.03, 0.3}, 1);
+    return {throws("slab thrown at a wall of 2 cm", slab, 0.02, 0),
+            throws("slab thrown at a wall of 1 mm, restitution 1", slab, 0.001, 1),
+            throws("ball thrown at a wall of 1 mm", sphere_type(0.15, 1, 0.5, 0), 0.001, 0.5),
+            throws("rod thrown at a wall of 1 mm", rod, 0.001, 0.5), struck_before_wall()};
+}
+
 /// 10 x 10 x 10 x 10 spheres between walls, put down touching, 60 s.
 ExtremeCase resting_spheres() {
     return {"10^4 spheres at rest for 60 s", [](PhysicsSettings settings) {
@@ -319,6 +386,7 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(
         seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0.3));
     cases.push_back(seams("ball slides over seams", sphere_type(0.15, 1), 0));
+    for (ExtremeCase& thrown : all_throws()) cases.push_back(std::move(thrown));
     cases.push_back(bouncing());
     if (with_long) cases.push_back(resting_spheres());
     return cases;

@@ -22,6 +22,15 @@ constexpr double kFlush = 1e-4;
 /// stopped there; more, and the look costs more.
 constexpr double kSkin = 0.1;
 
+/// Overlap that is left to the solver, as a part of the sum of two bodies' least half-sizes, usual
+/// 0.25: bodies that would come deeper in half a sub-step are stopped where they touch. More, and
+/// the solver may push them out on the wrong side; less, and more bodies lose a part of a sub-step.
+constexpr double kDeepest = 0.25;
+
+/// Bodies that are stopped touch when they are this part of the same apart, usual 0.005. Less costs
+/// more to find; more, and they stop visibly before what they hit.
+constexpr double kTouch = 0.005;
+
 /// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
 /// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
 constexpr double kBiasPart = 0.2;

@@ -1,5 +1,6 @@
 #include "core/dynamics/world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/dynamics/solver/blow.hpp"
@@ -49,12 +50,14 @@ StepReport World::step(double dt, Schedule& schedule) {
     for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
         advance_first_half(schedule);  // free motion to the middle, where contacts act
         find_pairs(schedule);          // broad phase
-        find_contacts(schedule);       // narrow phase, contacts keyed by feature id
+        stop_at_impacts(schedule, Impacts::Half::kFirst);  // nothing passes through
+        find_contacts(schedule);  // narrow phase, contacts keyed by feature id
         build_islands();
         solve_blows(schedule);           // what hits: compression, restitution
         integrate_velocities(schedule);  // gravity
         solve_islands(schedule);         // what rests: sequential impulses, warm started
         advance_second_half(schedule);   // rotors projected to unit rotors
+        stop_at_impacts(schedule, Impacts::Half::kSecond);
         relax_islands(schedule);  // soft contacts give back the velocity that removed overlap
     }
     return finish_step(schedule);
@@ -62,8 +65,10 @@ StepReport World::step(double dt, Schedule& schedule) {
 
 void World::advance_first_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
+    has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
-        tesserae::advance_first_half(simulation_, step_, bodies);
+        has_fast_[bodies.begin / kBodyGrain] =
+            tesserae::advance_first_half(simulation_, step_, bodies);
     });
     require_finite(schedule);
 }
@@ -73,7 +78,11 @@ void World::find_pairs(Schedule& schedule) {
     const Observed stage(*this, Stage::kFindPairs, count);
     const auto outgrows = [&](Range bodies) { return outgrows_bounds(simulation_, step_, bodies); };
     if (step_.substep > 0 && !schedule.any_range(count, kBodyGrain, outgrows)) return;
-    schedule.for_each_range(count, kBodyGrain,
+    find_pairs_anew(schedule);
+}
+
+void World::find_pairs_anew(Schedule& schedule) {
+    schedule.for_each_range(simulation_.bodies.size(), kBodyGrain,
                             [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
     schedule.find_pairs(simulation_, step_);
 }
@@ -127,9 +136,24 @@ void World::solve_islands(Schedule& schedule) {
 
 void World::advance_second_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceSecondHalf, simulation_.bodies.size());
+    has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
-        tesserae::advance_second_half(simulation_, step_, bodies);
+        has_fast_[bodies.begin / kBodyGrain] =
+            tesserae::advance_second_half(simulation_, step_, bodies);
     });
+}
+
+/// What a blow made fast may have come out of the bounds that the pairs were found by.
+void World::stop_at_impacts(Schedule& schedule, Impacts::Half half) {
+    if (std::find(has_fast_.begin(), has_fast_.end(), 1) == has_fast_.end()) return;
+    const std::size_t count = simulation_.bodies.size();
+    const Observed stage(*this, Stage::kStopAtImpacts, step_.pairs.size());
+    const auto left = [&](Range bodies) { return has_left_bounds(simulation_, step_, bodies); };
+    if (half == Impacts::Half::kSecond) {
+        require_finite(schedule);
+        if (schedule.any_range(count, kBodyGrain, left)) find_pairs_anew(schedule);
+    }
+    impacts_.stop(simulation_, step_, schedule, half);
 }
 
 void World::relax_islands(Schedule& schedule) {

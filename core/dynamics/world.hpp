@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "core/dynamics/stages/chunked_list.hpp"
+#include "core/dynamics/stages/impacts.hpp"
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/stages/schedule.hpp"
 #include "core/dynamics/stages/seams.hpp"
@@ -39,12 +43,14 @@ class World {
 
     void advance_first_half(Schedule& schedule);
     void find_pairs(Schedule& schedule);
+    void find_pairs_anew(Schedule& schedule);
     void find_contacts(Schedule& schedule);
     void build_islands();
     void solve_blows(Schedule& schedule);
     void integrate_velocities(Schedule& schedule);
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
+    void stop_at_impacts(Schedule& schedule, Impacts::Half half);
     void relax_islands(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
     void require_finite(Schedule& schedule) const;
@@ -54,6 +60,8 @@ class World {
     IslandBuilder island_builder_;
     ChunkedList<Contact> contacts_;
     Seams seams_;
+    Impacts impacts_;
+    std::vector<std::uint8_t> has_fast_;  ///< of every range of kBodyGrain bodies
     ChunkedList<ContactImpulse> pushing_;
     ChunkedList<Bivector> pushing_angular_;
     StageObserver* observer_ = nullptr;

@@ -135,5 +135,44 @@ TEST(ParallelWorld, RefusesWhatTheSerialWorldRefuses) {
     });
 }
 
+/// Counts the halves of steps in which something was fast.
+class FastHalves : public StageObserver {
+  public:
+    void begin(Stage stage, std::size_t, const Simulation&, const StepData&) override {
+        count += stage == Stage::kStopAtImpacts;
+    }
+    void end(Stage) override {}
+    int count = 0;
+};
+
+/// Bodies of all shapes that shoot through a closed room, some sizes a step.
+TEST(ParallelWorld, HasTheBitsOfTheSerialWorldWhereBodiesAreStoppedAtImpacts) {
+    Bodies start = mixed_heap();
+    std::mt19937_64 random(3);
+    for (BodyId id = 0; id < start.size(); ++id) {
+        if (!start.is_movable(id)) continue;
+        start.types[start.type[id]].restitution = 0.9;
+        start.velocity[id] = random_vector(random, 400);
+        start.angular_velocity[id] = {50.0 * (id % 7), -40, 30, 100, -20.0 * (id % 3), 10};
+    }
+    for (const int substeps : {1, 2}) {
+        PhysicsSettings settings;
+        settings.substeps = substeps;
+        World serial(start, settings);
+        FastHalves fast;
+        serial.observe(&fast);
+        for (int i = 0; i < 30; ++i) serial.step(kStep);
+        EXPECT_GT(fast.count, 20);
+        for (const int count : {1, 2, 4}) {
+            Threads threads(count);
+            ParallelWorld world(start, settings);
+            threads.run([&] {
+                for (int i = 0; i < 30; ++i) world.step(kStep);
+            });
+            EXPECT_EQ(difference_of(serial, world), "") << count << " threads";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace tesserae::parallel

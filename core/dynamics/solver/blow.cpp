@@ -16,6 +16,9 @@ double product(const Simulation& simulation, const StepData& step, BodyId id, co
     return sum;
 }
 
+/// Rounding of a sum of energies, as a part of them.
+constexpr double kEnergyRounding = 1e-12;
+
 }  // namespace
 
 bool has_blow(const Simulation& simulation, const StepData& step, Range contacts) {
@@ -39,7 +42,10 @@ Blow blow_of_island(const Simulation& simulation, const StepData& step, std::siz
 
 void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
                        const Blow& blow) {
-    double taken_squared = 0, given_squared = 0, lost = 0, cross = 0;
+    double taken_squared = 0, given_squared = 0, lost = 0, cross = 0, all = 0;
+    // Gravity's work in the sub-step changes by half of its kick times the change of velocity.
+    const Vec4 kick = step.h * simulation.settings.gravity;
+    double work_taken = 0, work_given = 0;
     for (const BodyId id : bodies) {
         const BlowMotion& m = step.blow_motion[id];
         const BodyMotion taken = m.before - m.compressed;
@@ -48,14 +54,32 @@ void limit_restitution(const Simulation& simulation, StepData& step, std::span<c
         given_squared += product(simulation, step, id, given, given);
         lost += product(simulation, step, id, taken, m.before + m.compressed);
         cross += product(simulation, step, id, m.compressed, given);
+        all += product(simulation, step, id, m.before, m.before);
+        const TypeProperties& type = simulation.type_of(id);
+        if (!type.falls) continue;
+        work_taken += type.mass * kick.dot(taken.velocity);
+        work_given += type.mass * kick.dot(given.velocity);
     }
+    const double slope = cross + 0.5 * work_given, least = lost + work_taken;
     // The part x of what is given: x^2 given^2 + 2 x cross <= returned^2 taken^2, twice energies.
     if (blow.driven || cross < 0) cross = 0;
     const double taken = blow.driven ? taken_squared : std::clamp(lost, 0.0, taken_squared);
     const double most = blow.returned * blow.returned * taken;
-    if (given_squared + 2 * cross <= most) return;
-    const double root = std::sqrt(cross * cross + given_squared * most);
-    const double part = most > 0 ? most / (cross + root) : 0;
+    double part = 1;
+    bool is_cut = given_squared + 2 * cross > most;
+    if (is_cut) {
+        const double root = std::sqrt(cross * cross + given_squared * most);
+        part = most > 0 ? most / (cross + root) : 0;
+    }
+    // Nor more than the energy that there was, with gravity's work: part^2 given^2 + 2 part slope
+    // <= least, where a blow that is not central rebounds before the bodies touch.
+    if (!blow.driven &&
+        part * part * given_squared + 2 * part * slope > least + kEnergyRounding * all) {
+        const double root = std::sqrt(std::max(0.0, slope * slope + given_squared * least));
+        part = given_squared > 0 ? std::clamp((root - slope) / given_squared, 0.0, part) : 0;
+        is_cut = true;
+    }
+    if (!is_cut) return;
     for (const BodyId id : bodies) {
         const BodyMotion& compressed = step.blow_motion[id].compressed;
         const BodyMotion motion = compressed + part * (motion_of(step, id) - compressed);

@@ -20,6 +20,8 @@ Blow blow_of_island(const Simulation& simulation, const StepData& step, std::siz
 /// bodies meet, so that the square of its change is twice the energy that it takes, and a central
 /// blow is not cut; with friction it takes more. Work that friction would do while restitution
 /// acts counts as given (bodies that are driven do work of their own: there it does not).
+/// Nor may there be more energy at the sub-step's end than at its start, the work of gravity
+/// included: what hits off its centre and rebounds before it touches would win some, some g h/v.
 void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
                        const Blow& blow);
 

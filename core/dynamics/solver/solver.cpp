@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
@@ -42,27 +43,38 @@ Vec4 friction_impulse(const ContactRow& row, const Vec4& v) {
     return clamped_to_ball(row.tangent_impulse - row.slide_mass * slip, most);
 }
 
+/// Of a row's impulses in a sweep [N s].
+struct RowChange {
+    double normal = 0;
+    Vec4 tangent = Vec4::Zero();
+};
+
 /// The normal first and then friction, so that no contact ends with more of it than its normal
 /// impulse allows; what the normal impulse does to the slip is known from the row, so that the
 /// bodies' velocities are read and written once.
-/// @return the change of the normal impulse [N s]
 template <NormalPass ContactRow::*kPass, bool kTurning>
-double solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
+RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
     const NormalPass& pass = row.*kPass;
     const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
     const double normal = std::max(
         0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - row.normal.dot(v)));
     const double change = normal - row.normal_impulse;
-    if (change == 0 && normal == 0) return 0;  // apart, and friction is 0 too
+    if (change == 0 && normal == 0) return {};  // apart, and friction is 0 too
     row.normal_impulse = normal;
-    Vec4 impulse = change * row.normal;
+    RowChange changes{change};
     if (row.friction > 0) {
         const Vec4 tangent = friction_impulse(row, v + change * row.normal_response);
-        impulse += tangent - row.tangent_impulse;
+        changes.tangent = tangent - row.tangent_impulse;
         row.tangent_impulse = tangent;
     }
-    apply_impulse<kTurning>(simulation, step, row, impulse);
-    return change;
+    apply_impulse<kTurning>(simulation, step, row, change * row.normal + changes.tangent);
+    return changes;
+}
+
+/// The larger of the velocities along and across the normal that a change makes up for [m/s].
+double velocity_left(const ContactRow& row, const RowChange& change) {
+    const double along = change.normal != 0 ? std::abs(change.normal) / row.relax.mass : 0;
+    return row.slide_mass > 0 ? std::max(along, change.tangent.norm() / row.slide_mass) : along;
 }
 
 /// Where there is rolling friction.
@@ -70,17 +82,16 @@ RollingRow& rolling_row_of(StepData& step, const ContactRow& row) {
     return step.rolling_rows[static_cast<std::size_t>(&row - step.rows.data())];
 }
 
-/// @return the largest change of a normal velocity [m/s] if it is measured, else 0
+/// @return the largest velocity_left() if it is measured, else 0
 template <NormalPass ContactRow::*kPass, bool kTurning, bool kRolling>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
     double residual = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
-        const double change = solve_row<kPass, kTurning>(simulation, step, row);
+        const RowChange change = solve_row<kPass, kTurning>(simulation, step, row);
         if constexpr (kRolling) solve_rolling_row(simulation, step, row, rolling_row_of(step, row));
-        if (sweep.measured && change != 0)
-            residual = std::max(residual, std::abs(change) / row.relax.mass);
+        if (sweep.measured) residual = std::max(residual, velocity_left(row, change));
     }
     return residual;
 }
@@ -160,6 +171,22 @@ std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
     return {first, std::unique(first, end)};
 }
 
+/// What is taken back would be along directions that have turned away: of bodies whose surface has
+/// turned by more than is left to the solver nothing is, or their energy would grow without bound.
+void leave_whirling(const Simulation& simulation, const StepData& step,
+                    std::span<ContactRow> rows) {
+    const auto whirls = [&](BodyId id) {
+        const TypeProperties& type = simulation.type_of(id);
+        return type.arm > 0 && 0.5 * step.h * type.arm * norm(step.angular_velocity[id]) >
+                                   kDeepest / kSlop * type.slop;
+    };
+    for (ContactRow& row : rows) {
+        if (!whirls(row.a) && !whirls(row.b)) continue;
+        row.relax.mass = row.slide_mass = 0;
+        row.tangent_mass.setZero();
+    }
+}
+
 void keep_hits(StepData& step, std::size_t island) {
     const ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t contact : contacts_of(step, island))
@@ -214,9 +241,12 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return relax_coloured_island(simulation, step, island, OneThread{});
-    if (simulation.settings.solver == Solver::kSoft)
-        step.residual[island] = run_pass(simulation, step, rows_of(step, island), Pass::kRelax,
-                                         effort_of_load(simulation));
+    if (simulation.settings.solver == Solver::kSoft) {
+        const std::span<ContactRow> rows = rows_of(step, island);
+        leave_whirling(simulation, step, rows);
+        step.residual[island] =
+            run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation));
+    }
     keep_impulses(simulation, step, island);
 }
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/dynamics/stages/free_path.hpp"
 #include "core/dynamics/stages/free_rotation.hpp"
 
 namespace tesserae {
@@ -43,8 +44,9 @@ double reach(const Simulation& simulation, const StepData& step, BodyId id, doub
 
 }  // namespace
 
-void advance_first_half(const Simulation& simulation, StepData& step, Range bodies) {
+bool advance_first_half(const Simulation& simulation, StepData& step, Range bodies) {
     const Bodies& last = simulation.bodies;
+    bool any_fast = false;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const auto id = static_cast<BodyId>(i);
         if (step.substep == 0) {
@@ -56,13 +58,20 @@ void advance_first_half(const Simulation& simulation, StepData& step, Range bodi
             }
         }
         advance_half(simulation, step, id);
+        any_fast = is_fast(simulation, step, id) || any_fast;
         if (!is_asleep(step, id)) set_inverse_inertia(simulation, step, id);
     }
+    return any_fast;
 }
 
-void advance_second_half(const Simulation& simulation, StepData& step, Range bodies) {
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        advance_half(simulation, step, static_cast<BodyId>(i));
+bool advance_second_half(const Simulation& simulation, StepData& step, Range bodies) {
+    bool any_fast = false;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const auto id = static_cast<BodyId>(i);
+        advance_half(simulation, step, id);
+        any_fast = is_fast(simulation, step, id) || any_fast;
+    }
+    return any_fast;
 }
 
 void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id) {
@@ -96,6 +105,16 @@ bool outgrows_bounds(const Simulation& simulation, const StepData& step, Range b
         const Bounds& bounds = step.bounds[id];
         const double moved = (step.position[id] - bounds.centre).norm();
         if (moved + reach(simulation, step, id, step.h) > bounds.radius) return true;
+    }
+    return false;
+}
+
+bool has_left_bounds(const Simulation& simulation, const StepData& step, Range bodies) {
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const TypeProperties& type = simulation.type_of(static_cast<BodyId>(i));
+        if (!type.bounded) continue;
+        const double moved = (step.position[i] - step.bounds[i].centre).norm();
+        if (moved + type.radius > step.bounds[i].radius) return true;
     }
     return false;
 }

@@ -9,8 +9,9 @@ namespace tesserae {
 /// two halves a sub-step moves x += h (v0 + v1) / 2, which is exact under constant gravity. Bodies
 /// that turn freely keep their angular momentum: turn_freely(). The first half ends where contacts
 /// act, and leaves there step.inverse_inertia of the bodies that are awake.
-void advance_first_half(const Simulation& simulation, StepData& step, Range bodies);
-void advance_second_half(const Simulation& simulation, StepData& step, Range bodies);
+/// @return whether any is fast: see Impacts
+bool advance_first_half(const Simulation& simulation, StepData& step, Range bodies);
+bool advance_second_half(const Simulation& simulation, StepData& step, Range bodies);
 
 /// step.inverse_inertia of a body as it is turned now; none if it is isotropic.
 void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id);
@@ -26,5 +27,9 @@ void update_bounds(const Simulation& simulation, StepData& step, Range bodies);
 /// Whether a body of the range, made faster by a contact, can leave the ball in its bounds in this
 /// sub-step, so that they and the pairs are to be found anew.
 bool outgrows_bounds(const Simulation& simulation, const StepData& step, Range bodies);
+
+/// Whether a body of the range, made faster by a contact, has come out of its bounds in the second
+/// half.
+bool has_left_bounds(const Simulation& simulation, const StepData& step, Range bodies);
 
 }  // namespace tesserae

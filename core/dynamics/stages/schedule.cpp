@@ -9,7 +9,7 @@ const char* name_of(Stage stage) {
     constexpr const char* kNames[] = {
         "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
         "solve_blows",        "integrate_velocities", "solve_islands", "advance_second_half",
-        "relax_islands",      "finish_step"};
+        "relax_islands",      "stop_at_impacts",      "finish_step"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 

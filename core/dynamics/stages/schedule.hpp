@@ -6,7 +6,7 @@
 namespace tesserae {
 
 /// The stages of a step in their order, as World::step calls them; all but the last once a
-/// sub-step.
+/// sub-step, and kStopAtImpacts only after halves in which something is fast.
 enum class Stage {
     kAdvanceFirstHalf,
     kFindPairs,
@@ -17,6 +17,7 @@ enum class Stage {
     kSolveIslands,
     kAdvanceSecondHalf,
     kRelaxIslands,
+    kStopAtImpacts,
     kFinishStep,
 };
 /// The name of the stage's function: "find_pairs".
