@@ -185,6 +185,7 @@ struct StepBeforeSolver {
     /// from.
     double solve(int iterations) {
         simulation.settings.iterations = iterations;
+        simulation.settings.tolerance = 0;
         const auto velocity = step.velocity;
         const auto angular_velocity = step.angular_velocity;
         const auto impulses = step.impulses;

@@ -36,8 +36,10 @@ struct Converged {
 };
 
 Converged converge(const Bodies& bodies, double duration) {
-    const Knobs fine{
-        .solver = Solver::kImpulse, .iterations = kFineIterations, .steps_per_second = kFineSteps};
+    const Knobs fine{.solver = Solver::kImpulse,
+                     .iterations = kFineIterations,
+                     .tolerance = 0,
+                     .steps_per_second = kFineSteps};
     Knobs half = fine, other = fine;
     half.iterations /= 2;
     half.steps_per_second /= 2;

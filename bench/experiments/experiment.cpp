@@ -13,6 +13,7 @@ PhysicsSettings settings_of(double duration, const Knobs& knobs, const Vec4& gra
     settings.steps_per_second = knobs.steps_per_second;
     settings.substeps = knobs.substeps;
     settings.iterations = knobs.iterations;
+    settings.tolerance = knobs.tolerance;
     settings.solver = knobs.solver;
     settings.integrator = knobs.integrator;
     return settings;

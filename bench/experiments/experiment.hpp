@@ -20,8 +20,9 @@ inline const Vec4 kDown{0, -kGravity, 0, 0};
 struct Knobs {
     RotationIntegrator integrator = PhysicsSettings{}.integrator;
     Solver solver = PhysicsSettings{}.solver;
-    int substeps = PhysicsSettings{}.substeps;      ///< a step
-    int iterations = PhysicsSettings{}.iterations;  ///< a sub-step
+    int substeps = PhysicsSettings{}.substeps;       ///< a step
+    int iterations = PhysicsSettings{}.iterations;   ///< a sub-step
+    double tolerance = PhysicsSettings{}.tolerance;  ///< [m/s]
     int steps_per_second = 240;
 
     friend bool operator==(const Knobs&, const Knobs&) = default;

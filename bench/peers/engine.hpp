@@ -26,7 +26,10 @@ class PeerEngine {
 
 using MakePeer = std::unique_ptr<PeerEngine> (*)(const PeerScene&, int iterations);
 
+/// That many sweeps, all of them.
 std::unique_ptr<PeerEngine> make_tesserae(const PeerScene& scene, int iterations);
+/// That many at most, until the default tolerance is reached.
+std::unique_ptr<PeerEngine> make_tesserae_at_defaults(const PeerScene& scene, int iterations);
 /// In the precision of the Bullet that the program is linked with.
 extern const char* const kBulletName;
 /// One friction direction at a point, that of the slip (Bullet's default).

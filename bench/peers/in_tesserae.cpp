@@ -25,19 +25,20 @@ Bodies bodies_of(const PeerScene& scene) {
     return bodies;
 }
 
-PhysicsSettings settings_of(int iterations) {
+PhysicsSettings settings_of(int iterations, double tolerance) {
     PhysicsSettings settings;
     settings.gravity = {0, -kPeerGravity, 0, 0};
     settings.steps_per_second = 1 / kPeerStep;
     settings.iterations = iterations;
+    settings.tolerance = tolerance;
     return settings;
 }
 
 class InTesserae : public PeerEngine {
   public:
-    InTesserae(const PeerScene& scene, int iterations)
+    InTesserae(const PeerScene& scene, int iterations, double tolerance)
         : count_(scene.size()),
-          settings_(settings_of(iterations)),
+          settings_(settings_of(iterations, tolerance)),
           world_(bodies_of(scene), settings_) {}
 
     void step() override {
@@ -114,7 +115,11 @@ class InTesserae : public PeerEngine {
 }  // namespace
 
 std::unique_ptr<PeerEngine> make_tesserae(const PeerScene& scene, int iterations) {
-    return std::make_unique<InTesserae>(scene, iterations);
+    return std::make_unique<InTesserae>(scene, iterations, 0);
+}
+
+std::unique_ptr<PeerEngine> make_tesserae_at_defaults(const PeerScene& scene, int iterations) {
+    return std::make_unique<InTesserae>(scene, iterations, PhysicsSettings{}.tolerance);
 }
 
 StageTimes stage_times(PeerEngine& tesserae) {

@@ -15,21 +15,29 @@
 
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
+#include "core/dynamics/state/settings.hpp"
 
 namespace tesserae::bench {
 namespace {
 
 constexpr std::array<int, 2> kIterations = {10, 30};
+constexpr int kDefaultIterations = PhysicsSettings{}.iterations;
 constexpr int kRepeats = 9, kStepsOfRepeat = 4;
 
 struct Peer {
     const char* name;
     MakePeer make;
     int dimension;
+    std::array<int, 2> iterations = kIterations;  ///< twice the same: run once
 };
 constexpr std::size_t kBullet = 1;  ///< its place among them
 std::vector<Peer> make_peers(bool all) {
-    std::vector<Peer> peers = {{"tesserae", make_tesserae, 4}, {kBulletName, make_bullet, 3}};
+    std::vector<Peer> peers = {{"tesserae", make_tesserae, 4},
+                               {kBulletName, make_bullet, 3},
+                               {"tesserae_default",
+                                make_tesserae_at_defaults,
+                                4,
+                                {kDefaultIterations, kDefaultIterations}}};
     if (!all) return peers;
     peers.push_back({"bullet_2_directions", make_bullet_2_directions, 3});
     peers.push_back({"ode", make_ode, 3});
@@ -119,7 +127,7 @@ class Run {
     }
 
     void print_stages() const {
-        if (name_ != "tesserae") {
+        if (!name_.starts_with("tesserae")) {
             fmt::print(",,,,,,\n");
             return;
         }
@@ -145,16 +153,20 @@ void compare(const std::vector<Peer>& peers, PeerScene (*make)(int dimension, in
              int count) {
     std::vector<std::array<std::unique_ptr<Run>, 2>> runs(peers.size());
     for (std::size_t i = 0; i < peers.size(); ++i)
-        for (std::size_t k = 0; k < kIterations.size(); ++k)
+        for (std::size_t k = 0; k < kIterations.size(); ++k) {
+            const int iterations = peers[i].iterations[k];
+            if (k > 0 && iterations == peers[i].iterations[0]) continue;
             runs[i][k] =
-                std::make_unique<Run>(peers[i], make(peers[i].dimension, count), kIterations[k]);
+                std::make_unique<Run>(peers[i], make(peers[i].dimension, count), iterations);
+        }
     for (int repeat = 0; repeat < kRepeats; ++repeat)
         for (auto& of_engine : runs)
-            for (auto& run : of_engine) run->measure();
+            for (auto& run : of_engine)
+                if (run) run->measure();
     const auto& bullet = runs[kBullet];
     for (const auto& run : runs) {
         run[0]->print(*bullet[0], nullptr, nullptr);
-        run[1]->print(*bullet[1], run[0].get(), bullet[0].get());
+        if (run[1]) run[1]->print(*bullet[1], run[0].get(), bullet[0].get());
     }
 }
 

@@ -53,6 +53,7 @@ void physics_keys(auto& self, const auto& visit) {
     visit("duration", self.duration, Rule::kNonNegative);
     visit("steps_per_second", self.steps_per_second, Rule::kPositive);
     visit("iterations", self.iterations, IntegerRange{1, 10000});
+    visit("tolerance", self.tolerance, NonNegativeOrUnwritten{PhysicsSettings{}.tolerance});
     visit("substeps", self.substeps, IntegerRange{1, 1000});
     visit("solver", self.solver, Names{kSolvers});
     visit("integrator", self.integrator, Names{kRotationIntegrators});

@@ -56,13 +56,14 @@ struct WriteKeys {
     }
 };
 
-/// Not written where it is 0: a key that is younger than scenes whose hashes stay.
+/// Not written where it has its default: a key that is younger than scenes whose hashes stay.
 struct NonNegativeOrUnwritten {
+    double unwritten = 0;
     void read(TableReader& reader, const char* key, double& value) const {
         reader.read(key, value, Rule::kNonNegative);
     }
     void write(EffectiveWriter& out, const char* key, double value) const {
-        if (value != 0) out.key(key, value);
+        if (value != unwritten) out.key(key, value);
     }
 };
 

@@ -66,8 +66,11 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                             "smaller ones one by one",
                             kColouredFrom),
                 "masses or sizes are too far apart for float: contacts one by one");
-    const std::string substeps =
-        fmt::format("{} a step, {} iterations each", physics.substeps, physics.iterations);
+    const std::string until = physics.tolerance > 0
+                                  ? fmt::format("at most {} iterations each, until {} m/s are left",
+                                                physics.iterations, physics.tolerance)
+                                  : fmt::format("{} iterations each", physics.iterations);
+    const std::string substeps = fmt::format("{} a step, {}", physics.substeps, until);
     plan.decide("sub-steps", physics.substeps > 1, substeps, substeps);
     plan.decide("relaxation of soft contacts", physics.solver == Solver::kSoft,
                 "solver = \"soft\": velocity that only removes overlap is given back",

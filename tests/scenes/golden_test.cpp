@@ -56,16 +56,16 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "4afdb24b213f3ce550d2fb45c3c15571");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "0a8c3771bd98b8f93e16c41049d363b8");
-    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "8fcdebb80834b9544f4a9864246474c3");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "d7348955eeda9d4f3f78d51f481a3797");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "2f20680c132351faa982c437436e421e");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "7ab9f0a6a5aaae01e480b3ba424a748e");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2", "physics.sleeping=true"};
-    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "69c70ffaa826fa602fa697d3b4cef9a2");
-    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "0cd2911c93319bf6dacd0c5eb7695a4e");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "85ff281083094b21b11f01933dd9466b");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "7fb9cb8938099673ea2b6ae229033014");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "300be13738eea74f445fc03471affb1f");
 }
 
@@ -79,9 +79,9 @@ TEST_F(Golden, LargeIslandsMoveAsEver) {
     };
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2"};
-    expect("pile", 1000, 200, {}, "943cccfb46c7ce54ead3db44bc1e0c8e");
-    expect("pile", 1000, 200, soft, "ddc0a219d1d1810e6346025265a69aeb");
-    expect("pyramid", 200, 60, {}, "daa3c87cb8fbc3a8efb10f6deb9099db");
+    expect("pile", 1000, 200, {}, "54f50923bf17b0b12e3c8381a1171dfe");
+    expect("pile", 1000, 200, soft, "f70d1bf2dbf82f86826a83f7e1749347");
+    expect("pyramid", 200, 60, {}, "07d758f81085bca5bc1947587bf0c4db");
     expect("pyramid", 200, 60, soft, "489f054804e5e3d0362ef0ffb5ae8427");
 }
 
@@ -117,8 +117,8 @@ TEST_F(Golden, AFilmIsAsEver) {
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
-              "62827d476bfa216d185dac39ddaadc02");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "ee374ed7a5383074e72ee80940269613");
+              "13b3ad88c2a1162c5f0e6cacbd80d410");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "dca2d73b2285c5b7488fb05a74c27ea6");
 }
 
 }  // namespace

@@ -198,7 +198,11 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
             solve_planes(lane, frame, most, rolling, kTwistingPlanes, rolling.twisting_mass,
                          rolling.twisting_step, turned, pair);
         }
-        if (sweep.measured) left = larger(left, velocity_left(lane, row.along, change));
+        if (!sweep.measured) continue;
+        left = larger(left, velocity_left(lane, row.along, change));
+        if constexpr (kFriction)
+            left = larger(left, velocity_left(lane.load(coloured.general_friction[k].slide_mass),
+                                              tangent_change));
     }
     pair.store();
     return left;

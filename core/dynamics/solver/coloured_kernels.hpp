@@ -22,7 +22,7 @@ struct ColouredStage {
 // be worked on at the same time.
 
 void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
-/// @return the largest change of a normal velocity [m/s] if it is measured, else 0
+/// @return the largest velocity_left() [m/s] if it is measured, else 0
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_round(const ColouredStage& stage, BatchRange batches);
 

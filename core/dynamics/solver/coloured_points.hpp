@@ -127,11 +127,15 @@ template <class F, template <class> class Impulse>
     return scale * impulse;
 }
 
-/// |change| over mass: what is left to solve [m/s].
+/// A change over the mass that it moves: what was left to solve [m/s].
 template <class F>
 [[gnu::always_inline]] inline F velocity_left(const Lane<F>& lane, const NormalRow& row, F change) {
     const F mass = lane.load(row.mass);
     return mass > F{} ? magnitude(change) / mass : F{};
+}
+template <class F>
+[[gnu::always_inline]] inline F velocity_left(F mass, const LaneVec4<F>& change) {
+    return mass > F{} ? square_root(dot(change, change)) / mass : F{};
 }
 
 /// Calls work(Lane<F>, batch) for all lanes of the batches.

@@ -114,7 +114,7 @@ template <bool kFriction, bool kRolling, class F>
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     F normal_impulse;
     const F change = solve_normal(lane, row.along, along, soft, sweep.pass, normal_impulse);
-    LaneVec4<F> impulse = change * n;
+    LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
         const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
@@ -124,16 +124,20 @@ template <bool kFriction, bool kRolling, class F>
         const LaneVec4<F> tangent = clamped<F>(old - lane.load(friction.mass) * slip,
                                                lane.load(friction.friction) * normal_impulse);
         store(lane, tangent, friction.impulse);
-        const LaneVec4<F> tangent_change = tangent - old;
+        tangent_change = tangent - old;
         turn(n, tangent_change, arm_a, arm_b, a, b);
-        impulse = impulse + tangent_change;
     }
     if constexpr (kRolling)
         solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
-    apply(impulse, a, b);
+    apply(change * n + tangent_change, a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
-    return sweep.measured ? velocity_left(lane, row.along, change) : F{};
+    if (!sweep.measured) return F{};
+    F left = velocity_left(lane, row.along, change);
+    if constexpr (kFriction)
+        left = larger(
+            left, velocity_left(lane.load(coloured.round_friction[batch].mass), tangent_change));
+    return left;
 }
 
 template <bool kFriction, bool kRolling>

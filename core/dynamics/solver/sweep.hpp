@@ -13,32 +13,35 @@ enum class Pass { kSolve, kRelax };
 struct Effort {
     int sweeps = 0;
     double enough = -1;  ///< [m/s]; -1: all sweeps
+    int every = 1;       ///< how many sweeps there are for a look at the residual
 };
 /// Of what rests: its impulses are started from in the next sub-step, which goes on with them.
 inline Effort effort_of_load(const Simulation& simulation) {
-    return {simulation.settings.iterations};
+    const double tolerance = simulation.settings.tolerance;
+    return {simulation.settings.iterations, tolerance > 0 ? tolerance : -1, 2};
 }
 /// Of a blow: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
 /// @param fastest   see Blow
 inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts, double fastest) {
     const auto sweeps = static_cast<int>(kBlowWork / contacts);
-    return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest};
+    return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest, 4};
 }
 inline Effort effort_of_large_blow(const Simulation& simulation, double fastest) {
-    return {simulation.settings.iterations, kLargeBlowResidual * fastest};
+    return {simulation.settings.iterations, kLargeBlowResidual * fastest, 4};
 }
 
 /// One iteration of a pass. Every other one goes through the island backward: a load at one end of
 /// it then reaches the other in one iteration (a tower of ten leans 10 times less). The last one of
 /// kSolve goes forward and that of kRelax backward, which is best for towers listed from the
-/// ground.
+/// ground; a pass that ends early ends so too, or what the other direction leaves shakes what rests
+/// (a pyramid of 78 boxes by 1.7 mm/s instead of 0.01).
 struct Sweep {
     Pass pass;
     bool backward, measured;  ///< measured: the residual is wanted
 };
 inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
     const int left = effort.sweeps - 1 - iteration;
-    const bool asks = effort.enough >= 0 && iteration % 4 == 3;
+    const bool asks = effort.enough >= 0 && left % effort.every == 0;
     return {pass, (left % 2 == 1) == (pass == Pass::kSolve), left == 0 || asks};
 }
 

@@ -251,14 +251,17 @@ TEST(LoadScene, TakesEveryKeyOfPhysicsOrItsDefault) {
     EXPECT_EQ(plain.duration, defaults.duration);
     EXPECT_EQ(plain.steps_per_second, defaults.steps_per_second);
     EXPECT_EQ(plain.iterations, defaults.iterations);
+    EXPECT_EQ(plain.tolerance, defaults.tolerance);
     EXPECT_EQ(plain.substeps, defaults.substeps);
     EXPECT_EQ(plain.solver, defaults.solver);
     EXPECT_EQ(plain.integrator, defaults.integrator);
     EXPECT_EQ(plain.sleeping, defaults.sleeping);
     const char* all =
-        "[physics]\nsubsteps = 1000\nsolver = \"soft\"\nintegrator = \"euler\"\nsleeping = true\n";
+        "[physics]\ntolerance = 0.001\nsubsteps = 1000\nsolver = \"soft\"\nintegrator = "
+        "\"euler\"\nsleeping = true\n";
     for (const std::string& text : {std::string(all), load_text(all).effective}) {
         const Scene scene = load_text(text);
+        EXPECT_EQ(scene.physics->tolerance, 0.001);
         EXPECT_EQ(scene.physics->substeps, 1000);
         EXPECT_EQ(scene.physics->solver, Solver::kSoft);
         EXPECT_EQ(scene.physics->integrator, RotationIntegrator::kEuler);
@@ -383,6 +386,16 @@ TEST(SceneHash, SeesEveryValue) {
         EXPECT_NE(changed(picture).hash, scene.hash) << picture;
         EXPECT_EQ(changed(picture).motion_hash, scene.motion_hash) << picture;
     }
+}
+
+TEST(Hashes, KnowAToleranceThatIsNotTheDefault) {
+    const Scene plain = load_text(kRich);
+    EXPECT_EQ(plain.effective.find("tolerance"), std::string::npos);
+    EXPECT_EQ(load_text(kRich, {"physics.tolerance=1e-6"}).effective, plain.effective);
+    const Scene zero = load_text(kRich, {"physics.tolerance=0"});
+    EXPECT_EQ(first_motion_difference(plain.effective, zero.effective),
+              "physics: nothing there, tolerance = 0 here");
+    EXPECT_EQ(load_text(zero.effective).hash, zero.hash);
 }
 
 TEST(Hashes, OfScenesWithoutRollingFrictionAreThoseOfBeforeThereWasAny) {

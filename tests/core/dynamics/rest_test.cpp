@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/dynamics/solver/sweep.hpp"
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+#include "tests/core/dynamics/observed_world.hpp"
+
+// When sweeps end, and that at the defaults what is stacked comes to rest.
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+/// The sweeps that a pass makes whose residuals are 1, 1/2, 1/4, ...
+std::vector<Sweep> sweeps_of(Pass pass, const Effort& effort) {
+    std::vector<Sweep> list;
+    iterate(pass, effort, [&](const Sweep& sweep) {
+        list.push_back(sweep);
+        return std::ldexp(1.0, 1 - static_cast<int>(list.size()));
+    });
+    return list;
+}
+
+TEST(Sweeps, EndOnceTheResidualIsSmallAndInTheSameDirectionAsAll) {
+    for (const Pass pass : {Pass::kSolve, Pass::kRelax})
+        for (const int most : {1, 2, 7, 8, 40})
+            for (const double enough : {-1.0, 0.0, 1e-3, 0.1, 2.0}) {
+                const std::vector<Sweep> list = sweeps_of(pass, {most, enough, 2});
+                const auto count = static_cast<int>(list.size());
+                ASSERT_GE(count, 1);
+                EXPECT_EQ(list.back().backward, pass == Pass::kRelax) << most << " " << enough;
+                EXPECT_TRUE(list.back().measured);
+                for (int i = 1; i < count; ++i) EXPECT_NE(list[i].backward, list[i - 1].backward);
+                const auto needed =
+                    enough > 0 ? 1 + std::max(0, static_cast<int>(std::ceil(-std::log2(enough))))
+                               : most;
+                EXPECT_GE(count, std::min(most, needed));
+                EXPECT_LE(count, std::min(most, needed + 1));
+            }
+}
+
+Bodies on_floor() {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    return bodies;
+}
+
+void add_box(Bodies& bodies, const Vec4& size, const Vec4& place) {
+    BodyType type = box_type(size, 1000 * size.prod());
+    type.friction = 0.5;
+    add(bodies, type, place);
+}
+
+Bodies ten_boards() {
+    Bodies bodies = on_floor();
+    for (int i = 0; i < 10; ++i) add_box(bodies, {2, 0.1, 0.5, 0.5}, {0, 0.05 + 0.1 * i, 0, 0});
+    return bodies;
+}
+
+Bodies pyramid(int rows) {
+    Bodies bodies = on_floor();
+    for (int row = 0; row < rows; ++row)
+        for (int i = 0; i < rows - row; ++i)
+            add_box(bodies, {0.95, 1, 1, 1}, {i + 0.5 * row, 0.5 + row, 0, 0});
+    return bodies;
+}
+
+TEST(Tolerance, BoundsTheResidualWhereThereAreSweepsEnough) {
+    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
+        for (const std::uint32_t coloured_from : {1u, kNoneColoured})
+            for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+                PhysicsSettings settings;
+                settings.solver = solver;
+                settings.tolerance = tolerance;
+                settings.iterations = 10000;
+                World world(make_simulation(pyramid(3), settings), coloured_from);
+                for (int i = 0; i < 20; ++i) {
+                    const double residual = world.step(kStep).residual;
+                    EXPECT_LE(residual, tolerance) << "step " << i;
+                }
+            }
+}
+
+TEST(Tolerance, OfZeroMakesAllSweeps) {
+    // So that more of them, after which a tolerance would long have been reached, give other bits.
+    const auto end_of = [](double tolerance, int iterations) {
+        PhysicsSettings settings;
+        settings.tolerance = tolerance;
+        settings.iterations = iterations;
+        World world(pyramid(3), settings);
+        run(world, 20);
+        return world.bodies();
+    };
+    EXPECT_TRUE(same_bits(end_of(1e-2, 200), end_of(1e-2, 202)));
+    EXPECT_FALSE(same_bits(end_of(0, 200), end_of(0, 202)));
+}
+
+double mean_speed(const World& world) {
+    double sum = 0;
+    for (const Vec4& v : world.bodies().velocity) sum += v.norm();
+    return sum / static_cast<double>(world.bodies().size());
+}
+
+/// Ten sweeps left them at 60 mm/s for ever.
+TEST(Rest, OfTenBoards) {
+    struct Case {
+        Solver solver;
+        double speed, overlap;  ///< [m/s], [m]
+    };
+    // Springs let them sink in, and take longer to end.
+    const std::array cases = {Case{Solver::kImpulse, 1e-5, 0.5e-3},
+                              Case{Solver::kSoft, 1e-3, 2e-3}};
+    for (const auto& [solver, speed, overlap] : cases) {
+        PhysicsSettings settings;
+        settings.solver = solver;
+        World world(ten_boards(), settings);
+        run(world, 1200);
+        EXPECT_LT(mean_speed(world), speed);
+        EXPECT_LT(world.step(kStep).penetration, overlap);
+    }
+}
+
+TEST(Rest, OfTenBoardsLetsThemSleep) {
+    PhysicsSettings settings;
+    settings.sleeping = true;
+    World world(ten_boards(), settings);
+    run(world, 480);
+    EXPECT_EQ(world.step(kStep).asleep, 10u);
+}
+
+/// In one large island, in float: four times the sweeps that left it at 4 mm/s.
+TEST(Rest, OfAPyramid) {
+    World world(pyramid(12), PhysicsSettings{});
+    run(world, 720);
+    EXPECT_LT(mean_speed(world), 2e-4);
+    EXPECT_LT(world.step(kStep).penetration, 0.5e-3);
+}
+
+}  // namespace
+}  // namespace tesserae
