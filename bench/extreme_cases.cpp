@@ -86,6 +86,23 @@ Bodies pyramid(int rows) {
     return bodies;
 }
 
+Bodies boards() {
+    Bodies bodies = floor_and();
+    for (int i = 0; i < 10; ++i)
+        add(bodies, box_type({2, 0.1, 0.5, 0.5}, 50), {0, 0.05 + 0.1 * i, 0, 0});
+    return bodies;
+}
+
+/// Each row moved by a quarter of a box.
+Bodies wall(int rows, int in_row) {
+    Bodies bodies = floor_and();
+    for (int row = 0; row < rows; ++row)
+        for (int i = 0; i < in_row; ++i)
+            add(bodies, box_type({1, 0.5, 0.5, 0.5}, 125),
+                {1.05 * i + (row % 2) * 0.25, 0.25 + 0.5 * row, 0, 0});
+    return bodies;
+}
+
 /// Spheres of 1 mm, 0.1, 10 and 1000 m in diameter, beside each other, and two of 1 m on the last.
 Bodies mixed_sizes() {
     Bodies bodies = floor_and();
@@ -265,6 +282,7 @@ ExtremeCase seams(std::string name, BodyType body, double friction) {
 /// A body of 0.3 m thrown at a wall 500 times from any side, at 5 to 20 of its sizes a step,
 /// turning: how many are beyond it after 12 steps, and the most energy that any wins.
 ExtremeCase throws(std::string name, BodyType body, double thickness, double restitution) {
+    body.restitution = restitution;
     return {
         std::move(name), [=](PhysicsSettings settings) -> Measurements {
             constexpr int kThrows = 500;
@@ -277,15 +295,13 @@ ExtremeCase throws(std::string name, BodyType body, double thickness, double res
             };
             BodyType wall = box_type({thickness, 200, 200, 200}, 1);
             wall.fixed_position = wall.fixed_rotation = true;
-            BodyType thrown = body;
-            thrown.restitution = restitution;
             int lost = 0;
             double gain = 0;
             for (int i = 0; i < kThrows; ++i) {
                 const double speed = 0.3 * 240 * (12.5 + 7.5 * part(engine));
                 Bodies bodies;
                 add(bodies, wall, Vec4::Zero());
-                add(bodies, thrown, {-0.5 - 0.01 * speed * (1 + part(engine)), 0, 0, 0},
+                add(bodies, body, {-0.5 - 0.01 * speed * (1 + part(engine)), 0, 0, 0},
                     speed * (Vec4::UnitX() + random_vector(engine, 0.4)), plane(20));
                 bodies.rotor.back() = exp(plane(2));
                 World world(bodies, settings);
@@ -369,6 +385,8 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(
         staying("tower of 40 boxes, 10 s", tower(std::vector<double>(40, 1000.0)), 1, 10));
     cases.push_back(staying("pyramid of 55 boxes, 10 s", pyramid(10), 1, 10));
+    cases.push_back(staying("ten boards of 2 x 0.1 x 0.5 x 0.5 m, 10 s", boards(), 0.1, 10));
+    cases.push_back(staying("wall of 20 rows of 20 boxes, 10 s", wall(20, 20), 0.5, 10));
     cases.push_back(staying("spheres of 1 mm to 1 km, 4 s", mixed_sizes(), 0.001, 4));
     for (const double rate : {30.0, 60.0, 120.0, 2000.0})
         cases.push_back(staying(fmt::format("tower of 10 boxes, steps of 1/{:g} s, 4 s", rate),

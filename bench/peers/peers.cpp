@@ -21,7 +21,7 @@ namespace tesserae::bench {
 namespace {
 
 constexpr std::array<int, 2> kIterations = {10, 30};
-constexpr int kDefaultIterations = PhysicsSettings{}.iterations;
+const int kDefaultIterations = PhysicsSettings{}.iterations;
 constexpr int kRepeats = 9, kStepsOfRepeat = 4;
 
 struct Peer {
