@@ -16,8 +16,9 @@ double product(const Simulation& simulation, const StepData& step, BodyId id, co
     return sum;
 }
 
-/// Rounding of a sum of energies, as a part of them.
-constexpr double kEnergyRounding = 1e-12;
+/// Rounding of a sum of energies, as a part of them; what a compression may add that has not
+/// converged or is in float.
+constexpr double kEnergyRounding = 1e-12, kNotJammed = 1e-6;
 
 }  // namespace
 
@@ -39,6 +40,17 @@ Blow blow_of_island(const Simulation& simulation, const StepData& step, std::siz
     }
     return all;
 }
+
+double twice_kinetic_energy(const Simulation& simulation, const StepData& step, BodyId id,
+                            const BodyMotion& motion) {
+    return product(simulation, step, id, motion, motion);
+}
+
+bool can_jam(const Simulation& simulation, const Blow& blow) {
+    return simulation.needs.friction && simulation.needs.turning && !blow.driven;
+}
+
+bool has_jammed(double before, double after) { return after > (1 + kNotJammed) * before; }
 
 void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
                        const Blow& blow) {

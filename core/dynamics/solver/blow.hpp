@@ -12,6 +12,17 @@ bool has_blow(const Simulation& simulation, const StepData& step, Range contacts
 /// The largest of its contacts' numbers.
 Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island);
 
+/// Twice the kinetic energy of a body [J].
+double twice_kinetic_energy(const Simulation& simulation, const StepData& step, BodyId id,
+                            const BodyMotion& motion);
+
+/// Whether friction can jam in the island's compression: it may then add energy, as Coulomb's law
+/// has no answer where it turns a slender body into what it hits (Painleve 1895), and is done again
+/// without friction, which takes energy whatever the bodies.
+bool can_jam(const Simulation& simulation, const Blow& blow);
+/// Whether it has: an energy, or a multiple of it, before the compression and after it.
+bool has_jammed(double before, double after);
+
 /// Cuts what restitution gave to all bodies of an island alike, so that no blow adds energy:
 /// needs step.blow_motion, and the bodies' motion after restitution.
 ///

@@ -229,9 +229,9 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
                                         coloured.general_rolling[batch.row + p].impulse);
             }
             const Contact& c = stage.step.contacts[batch.contact[k]];
-            coloured.frames[i].friction.lane[k] = float_friction(simulation, c);
+            coloured.frames[i].friction.lane[k] = float_friction(stage, c);
             if constexpr (kRolling) {
-                coloured.pair_rolling[i].arm.lane[k] = float_rolling_arm(simulation, c);
+                coloured.pair_rolling[i].arm.lane[k] = float_rolling_arm(stage, c);
                 put_turning(stage, batch.contact[k], k, coloured.pair_rolling[i].turning);
             }
             rounding.lane[k] =

@@ -15,6 +15,7 @@ struct ColouredStage {
     StepData& step;
     double mass_unit;  ///< [kg]
     Cause cause;
+    bool friction = true;  ///< false: rows are made without
 };
 
 // Of round and of general batches: makes their rows and applies the impulses that they start from;

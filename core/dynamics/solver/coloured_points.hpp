@@ -48,8 +48,10 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
 /// The largest friction coefficient in float: its square, 1e36, is one too, of at most 3e38.
 constexpr double kLargestFloatFriction = 1e18;
 
-inline float float_friction(const Simulation& simulation, const Contact& c) {
-    return static_cast<float>(std::min(friction_of(simulation, c.a, c.b), kLargestFloatFriction));
+inline float float_friction(const ColouredStage& stage, const Contact& c) {
+    if (!stage.friction) return 0;
+    return static_cast<float>(
+        std::min(friction_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
 
 inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
@@ -61,9 +63,10 @@ inline Bivector bivector_in_lane(const std::array<Eight, 6>& from, std::size_t l
             from[3].lane[lane], from[4].lane[lane], from[5].lane[lane]};
 }
 
-inline float float_rolling_arm(const Simulation& simulation, const Contact& c) {
+inline float float_rolling_arm(const ColouredStage& stage, const Contact& c) {
+    if (!stage.friction) return 0;
     return static_cast<float>(
-        std::min(rolling_arm_of(simulation, c.a, c.b), kLargestFloatFriction));
+        std::min(rolling_arm_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
 /// How body b turns against a at the start, and the angular impulse to start from.
 inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::size_t lane,

@@ -153,10 +153,10 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
             put_point(stage, batch.contact[k], k, points);
             const Contact& c = stage.step.contacts[batch.contact[k]];
             if constexpr (kFriction)
-                coloured.round_friction[i].friction.lane[k] = float_friction(simulation, c);
+                coloured.round_friction[i].friction.lane[k] = float_friction(stage, c);
             if constexpr (kRolling) {
                 RoundRolling& rolling = coloured.round_rolling[i];
-                rolling.arm.lane[k] = float_rolling_arm(simulation, c);
+                rolling.arm.lane[k] = float_rolling_arm(stage, c);
                 put_turning(stage, batch.contact[k], k, rolling.turning);
                 put_angular_impulse(stage, batch.contact[k], k, rolling.impulse);
             }

@@ -38,6 +38,8 @@ struct OneThread {
 void begin_changes(const ColouredStage& stage, Range bodies);
 /// step.blow_motion of the bodies: with the changes of the compression, not added yet.
 void keep_blow_motion(const ColouredStage& stage, Range bodies);
+/// Whether friction has in the compression, whose changes are not added yet; see can_jam().
+bool has_jammed(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
@@ -47,10 +49,11 @@ void take_changes_back(const ColouredStage& stage, Range bodies);
 /// One coloured island and its colours.
 class ColouredIsland {
   public:
-    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause)
+    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause,
+                   bool friction = true)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step, all_.mass_unit[place_], cause} {}
+          stage_{simulation, step, all_.mass_unit[place_], cause, friction} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
@@ -134,6 +137,14 @@ void keep_coloured(const ColouredIsland& island, const Threads& threads) {
                        });
 }
 
+/// The first part of a blow.
+template <class Threads>
+void compress_coloured(const ColouredIsland& island, const Effort& effort, const Threads& threads,
+                       LaneCount lanes) {
+    start_coloured(island, threads, lanes);
+    iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
+}
+
 /// solve_blow() of a coloured island.
 template <class Threads>
 void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island,
@@ -143,9 +154,11 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
     const Effort effort = effort_of_large_blow(simulation, blow.fastest);
-    start_coloured(coloured, threads, lanes);
-    iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
     const Range range = coloured.bodies();
+    compress_coloured(coloured, effort, threads, lanes);
+    if (can_jam(simulation, blow) && has_jammed(stage, range))
+        compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), effort,
+                          threads, lanes);
     const auto add = [&](Range some) { add_changes(stage, some); };
     if (blow.returned == 0) {
         threads.for_bodies(range, add);

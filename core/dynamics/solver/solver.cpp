@@ -205,6 +205,44 @@ void keep_impulses(const Simulation& simulation, StepData& step, std::size_t isl
     }
 }
 
+/// The rows without their impulses, which are taken back from the bodies, and without friction.
+void restart_without_friction(const Simulation& simulation, StepData& step, std::size_t island) {
+    const std::span<ContactRow> rows = rows_of(step, island);
+    for (ContactRow& row : rows) {
+        const Vec4 impulse = row.normal_impulse * row.normal + row.tangent_impulse;
+        apply_impulse<true>(simulation, step, row, -impulse);
+        row.normal_impulse = row.friction = 0;
+        row.tangent_impulse.setZero();
+        if (!simulation.needs.rolling) continue;
+        RollingRow& rolling = rolling_row_of(step, row);
+        apply_angular_impulse(simulation, step, row.a, row.b, -angular_impulse_of(row, rolling));
+        rolling = {};
+    }
+    step.has_rows[island] = 0;  // they are no longer those of the contacts
+}
+
+/// The first part of a blow; see can_jam().
+void compress(const Simulation& simulation, StepData& step, std::size_t island, const Blow& blow,
+              const Effort& effort) {
+    const std::span<ContactRow> rows = rows_of(step, island);
+    if (!can_jam(simulation, blow)) {
+        run_pass(simulation, step, rows, Pass::kSolve, effort);
+        return;
+    }
+    const std::span<const BodyId> bodies = bodies_of(simulation, step, island);
+    const auto energy = [&] {
+        double sum = 0;
+        for (const BodyId id : bodies)
+            sum += twice_kinetic_energy(simulation, step, id, motion_of(step, id));
+        return sum;
+    };
+    const double before = energy();
+    run_pass(simulation, step, rows, Pass::kSolve, effort);
+    if (!has_jammed(before, energy())) return;
+    restart_without_friction(simulation, step, island);
+    run_pass(simulation, step, rows, Pass::kSolve, effort);
+}
+
 }  // namespace
 
 void solve_blow(const Simulation& simulation, StepData& step, std::size_t island) {
@@ -216,12 +254,12 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
     const std::span<ContactRow> rows = rows_of(step, island);
     const Effort effort = effort_of_blow(simulation, rows.size(), blow.fastest);
     if (blow.returned == 0) {
-        run_pass(simulation, step, rows, Pass::kSolve, effort);
+        compress(simulation, step, island, blow, effort);
         return keep_hits(step, island);
     }
     const std::span<const BodyId> bodies = bodies_of(simulation, step, island);
     for (const BodyId id : bodies) step.blow_motion[id].before = motion_of(step, id);
-    run_pass(simulation, step, rows, Pass::kSolve, effort);
+    compress(simulation, step, island, blow, effort);
     for (const BodyId id : bodies) step.blow_motion[id].compressed = motion_of(step, id);
     run_pass(simulation, step, rows, Pass::kRelax, effort);
     limit_restitution(simulation, step, bodies, blow);

@@ -38,7 +38,8 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     colouring_.end(simulation, step);
     step.rows.resize(rows);
     if (simulation.needs.rolling) step.rolling_rows.resize(rows);
-    if (simulation.needs.restitution) step.blow_bodies.resize(2 * std::size_t{rows});
+    if (simulation.needs.restitution || simulation.needs.friction)
+        step.blow_bodies.resize(2 * std::size_t{rows});
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {

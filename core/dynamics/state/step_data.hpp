@@ -171,7 +171,7 @@ struct StepData {
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
-    std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, likewise
+    std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, or with friction
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
 };
 

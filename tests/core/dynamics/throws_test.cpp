@@ -12,6 +12,7 @@
 #include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/stages/step.hpp"
 #include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/observed_world.hpp"
 
 // Nothing goes through anything, however fast, and no energy is won.
 namespace tesserae {
@@ -75,6 +76,22 @@ TEST(Throw, AtAWallNeverPassesAndAddsNoEnergy) {
             }
         }
     EXPECT_GT(hits, throws(40) * kThrownKinds / 3);
+}
+
+/// A capsule that whirls into a rough wall: friction turns it into what it hits, and the
+/// compression alone would give it 36 times its energy.
+TEST(Throw, ThatFrictionJamsAddsNoEnergy) {
+    for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
+        std::mt19937_64 random(1000003ULL + 4866);
+        const Throw scene = throw_at_wall(random, 1, false);
+        World world(make_simulation(scene.bodies, scene.settings), coloured_from);
+        const Gain gain(scene.bodies, scene.settings.gravity);
+        for (int k = 0; k < kStepsOfThrow; ++k) {
+            world.step(scene.dt);
+            // In float velocities are rounded by 6e-8 of their change.
+            EXPECT_LT(gain.of(world.bodies()), coloured_from == 1 ? 1e-6 : kNoGain) << k;
+        }
+    }
 }
 
 /// The balls inscribed in both never meet deeply, nor do they change places within a step: one that
