@@ -30,5 +30,7 @@ void keep_round(const ColouredStage& stage, BatchRange batches);
 void start_general(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
 double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_general(const ColouredStage& stage, BatchRange batches);
+/// Of what whirls() nothing is taken back; bodies that are round on both sides do not.
+void leave_whirling_general(const ColouredStage& stage, BatchRange batches);
 
 }  // namespace tesserae

@@ -142,7 +142,6 @@ template <bool kFriction, bool kRolling, class F>
 
 template <bool kFriction, bool kRolling>
 void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
-    const Simulation& simulation = stage.simulation;
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];

@@ -192,6 +192,13 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     if (simulation.settings.solver == Solver::kSoft) {
+        coloured.for_colours(threads, LaneCount::kOne, false,
+                             [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+                                 at_work.for_batches(batches.general, kManifoldPoints,
+                                                     [&](BatchRange piece) {
+                                                         leave_whirling_general(stage, piece);
+                                                     });
+                             });
         threads.for_bodies(coloured.bodies(),
                            [&](Range bodies) { take_changes_back(stage, bodies); });
         step.residual[island] =

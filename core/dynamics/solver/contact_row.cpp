@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/constants.hpp"
+
 namespace tesserae {
 namespace {
 
@@ -58,6 +60,12 @@ double least_response(const Simulation& simulation, BodyId a, BodyId b) {
     const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
     const double moves = type_a.inverse_mass + type_b.inverse_mass;
     return kNoResponse * (moves > 0 ? moves : greatest_turn(type_a) + greatest_turn(type_b));
+}
+
+bool whirls(const Simulation& simulation, const StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    return type.arm > 0 &&
+           0.5 * step.h * type.arm * norm(step.angular_velocity[id]) > kDeepest / kSlop * type.slop;
 }
 
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {

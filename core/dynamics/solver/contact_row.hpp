@@ -13,6 +13,11 @@ double friction_of(const Simulation& simulation, BodyId a, BodyId b);
 /// can move (a sphere whose position is fixed, pushed through its centre) [1/kg].
 double least_response(const Simulation& simulation, BodyId a, BodyId b);
 
+/// Whether a body's surface has turned by more in half a sub-step than is left to the solver. What
+/// the soft solver takes back would be along directions that have turned away: of what whirls
+/// nothing is, or its energy would grow without bound.
+bool whirls(const Simulation& simulation, const StepData& step, BodyId id);
+
 /// The contact in the middle of the sub-step, but for what start_row() sets.
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <span>
 
-#include "core/dynamics/constants.hpp"
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
@@ -171,17 +170,11 @@ std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
     return {first, std::unique(first, end)};
 }
 
-/// What is taken back would be along directions that have turned away: of bodies whose surface has
-/// turned by more than is left to the solver nothing is, or their energy would grow without bound.
+/// Of what whirls() nothing is taken back.
 void leave_whirling(const Simulation& simulation, const StepData& step,
                     std::span<ContactRow> rows) {
-    const auto whirls = [&](BodyId id) {
-        const TypeProperties& type = simulation.type_of(id);
-        return type.arm > 0 && 0.5 * step.h * type.arm * norm(step.angular_velocity[id]) >
-                                   kDeepest / kSlop * type.slop;
-    };
     for (ContactRow& row : rows) {
-        if (!whirls(row.a) && !whirls(row.b)) continue;
+        if (!whirls(simulation, step, row.a) && !whirls(simulation, step, row.b)) continue;
         row.relax.mass = row.slide_mass = 0;
         row.tangent_mass.setZero();
     }
@@ -216,7 +209,8 @@ void restart_without_friction(const Simulation& simulation, StepData& step, std:
         if (!simulation.needs.rolling) continue;
         RollingRow& rolling = rolling_row_of(step, row);
         apply_angular_impulse(simulation, step, row.a, row.b, -angular_impulse_of(row, rolling));
-        rolling = {};
+        rolling.arm = 0;
+        rolling.rolling.impulse.setZero(), rolling.twisting.impulse.setZero();
     }
     step.has_rows[island] = 0;  // they are no longer those of the contacts
 }
