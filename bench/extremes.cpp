@@ -21,7 +21,7 @@ std::vector<Named> settings() {
     soft.solver = Solver::kSoft;
     soft.substeps = 4;
     soft.iterations = 2;
-    return {{"impulse 1x10", impulse}, {"soft 4x2", soft}};
+    return {{"impulse 1x40", impulse}, {"soft 4x2", soft}};
 }
 
 void print(const ExtremeCase& extreme, const Named& named) {
