@@ -155,14 +155,6 @@ FreePath::State FreePath::at(double time) const {
     return state;
 }
 
-bool is_fast(const Simulation& simulation, const StepData& step, BodyId id) {
-    const TypeProperties& type = simulation.type_of(id);
-    if (!type.bounded) return false;
-    double speed = step.velocity[id].norm();
-    if (type.arm > 0) speed += type.arm * norm(step.angular_velocity[id]);
-    return 0.5 * step.h * speed > kDeepest / kSlop * type.slop;
-}
-
 double impact_time(const FreePath& a, const FreePath& b, double from,
                    std::vector<Contact>& scratch) {
     const GapBounds bounds(a, b);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
@@ -54,7 +56,18 @@ class FreePath {
 
 /// Whether a body can get so far in half a sub-step, at the speed that it has, that another may
 /// have to be kept from passing through it.
-bool is_fast(const Simulation& simulation, const StepData& step, BodyId id);
+inline bool is_fast(const Simulation& simulation, const StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (!type.bounded) return false;
+    // Every body is asked twice a sub-step: without roots, which few need.
+    const double half = 0.5 * step.h, most = kDeepest / kSlop * type.slop;
+    const double way_squared = half * half * step.velocity[id].squaredNorm();
+    if (!(type.arm > 0)) return way_squared > most * most;
+    const Bivector& omega = step.angular_velocity[id];
+    const double spin_squared = half * half * type.arm * type.arm * dot(omega, omega);
+    if (2 * (way_squared + spin_squared) <= most * most) return false;
+    return std::sqrt(way_squared) + std::sqrt(spin_squared) > most;
+}
 
 constexpr double kNoImpact = std::numeric_limits<double>::infinity();
 
