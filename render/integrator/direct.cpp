@@ -26,7 +26,7 @@ void DirectIntegrator::radiance(std::span<const ViewSample> samples, std::span<C
 /// where it ends.
 bool DirectIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats) const {
     if (!path.meets_surface()) {
-        path.sum += path.throughput * light_seen(path);
+        path.sum += path.throughput * light_seen(path, 0);
         return false;
     }
     const Surface& surface = *path.surface;
@@ -38,7 +38,7 @@ bool DirectIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats
     path.sum += path.throughput * surface.material->emission;
     if (is_last) return false;
 
-    const auto u = path.sampler.group(first_group(scattered));
+    const auto u = path.sampler.group(first_group(scattered, lights_.spheres.size()));
     scatter_specular(path, u[0]);
     return survives(path, scattered, u[3]);
 }

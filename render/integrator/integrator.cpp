@@ -68,32 +68,26 @@ void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
     }
 }
 
-Color LightIntegrator::light_seen(const LightPath& path) const {
-    const auto weight = [&](double angle) {
-        if (!(path.density > 0 && angle > 0)) return 1.0;
-        return power_weight(path.density, 1 / cap_solid_angle(angle));
-    };
-    if (path.light != LightSet::kNone) {
-        const SphereLight& light = lights_.spheres[path.light];
-        const LightDisc disc = LightSet::at(light, path.ray.origin, path.ray.direction).disc;
-        return weight(disc.angle) * light.radiance;
-    }
+Color LightIntegrator::light_seen(const LightPath& path, double chosen) const {
+    if (path.light != LightSet::kNone)
+        return power_weight(path.density, chosen) * lights_.spheres[path.light].radiance;
     Color light = lights_.sky;
     if (path.is_view) return light;
     for (const SunDisc& sun : lights_.suns)
         if (sun.angle > 0 && is_in_disc(sun, path.ray.direction))
-            light += weight(sun.angle) * sun.radiance;
+            light += power_weight(path.density, 1 / cap_solid_angle(sun.angle)) * sun.radiance;
     return light;
 }
 
-std::uint32_t LightIntegrator::first_group(int scattered) const {
-    const std::size_t groups = 1 + lights_.suns.size() + lights_.spheres.size();
+std::uint32_t LightIntegrator::first_group(int scattered, std::size_t lamps) const {
+    const std::size_t groups = 1 + lights_.suns.size() + lamps;
     return static_cast<std::uint32_t>(groups) * static_cast<std::uint32_t>(scattered);
 }
 
 void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) {
     path.ray = {path.surface->point, direction, path.surface->body};
     path.density = density;
+    path.normal = path.surface->normal;
     path.is_view = false;
 }
 
@@ -130,6 +124,7 @@ bool LightIntegrator::survives(LightPath& path, int scattered, double chance) co
 }
 
 double LightIntegrator::power_weight(double p, double q) {
+    if (!(p > 0 && q > 0)) return 1;
     const double ratio = q / p;
     return 1 / (1 + ratio * ratio);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/integrator/shading.hpp"
+#include "render/light/lamps.hpp"
 #include "render/light/light_set.hpp"
 #include "render/material/bsdf.hpp"
 #include "render/sampling/sampler.hpp"
@@ -31,6 +32,7 @@ struct LightPath {
     std::uint32_t medium = GlassBodies::kNone;  ///< the glass that the ray is in
     /// Of the choice of the ray's direction, where lights were chosen as well; else 0.
     double density = 0;
+    Vec4 normal = Vec4::Zero();  ///< of the surface that the ray comes from
     bool is_view = true;
 
     std::optional<Surface> surface{};
@@ -79,10 +81,11 @@ class LightIntegrator {
     void trace(PathWave& wave, FrameStats& stats) const;
     /// Radiance of the light or the sky that a path's ray ends in, weighted against the choice of
     /// lights.
-    Color light_seen(const LightPath& path) const;
+    /// @param chosen   density with which that gives the ray's direction, toward a sphere light
+    Color light_seen(const LightPath& path, double chosen) const;
     /// The group of numbers for the scattering after so many. Those up to the next scattering's are
-    /// for the choice of lights, one for each sun and sphere light.
-    std::uint32_t first_group(int scattered) const;
+    /// for the choice of lights, one for each sun and for each lamp that is asked.
+    std::uint32_t first_group(int scattered, std::size_t lamps) const;
     /// Sends a path on from its surface.
     static void leave(LightPath& path, const Vec4& direction, double density);
     /// The same from a mirror or glass.
@@ -91,7 +94,7 @@ class LightIntegrator {
     /// Whether a path goes on after its scattering: by Russian roulette once it is long.
     /// @param chance   uniform in [0, 1)
     bool survives(LightPath& path, int scattered, double chance) const;
-    /// The weight of a choice of density p against one of density q.
+    /// The weight of a choice of density p against one of density q; 1 where one is 0.
     static double power_weight(double p, double q);
 
     const Settings& settings_;
@@ -116,14 +119,16 @@ class DirectIntegrator : public LightIntegrator {
 /// All light, with noise that falls with the number of samples. Every surface that is no mirror or
 /// glass adds what a random point of every light brings there, and sends the path on in a random
 /// direction of its own choice. Lights that both choices can find (sphere lights, suns with an
-/// angle) are counted with weights that add up to 1 (power heuristic; Veach 1997, section 9.2); the
-/// sky, emission and whatever is seen in mirrors and through glass is found by the ray alone, point
-/// lights and hard suns by the lights' choice alone. So the mean over samples is exact, but for the
-/// light of points and hard suns by way of mirrors and glass, which no ray finds.
-/// Its reference chooses no lights: path_reference() of tests/render/integrator/path_test.cpp.
+/// angle, bounded bodies that glow) are counted with weights that add up to 1 (power heuristic;
+/// Veach 1997, section 9.2); the sky, planes that glow and whatever is seen in mirrors and through
+/// glass is found by the ray alone, point lights and hard suns by the lights' choice alone. So the
+/// mean over samples is exact, but for the light of points and hard suns by way of mirrors and
+/// glass, which no ray finds. Its reference chooses no lights: path_reference() of
+/// tests/render/integrator/path_test.cpp.
 class PathIntegrator : public LightIntegrator {
   public:
-    using LightIntegrator::LightIntegrator;
+    PathIntegrator(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
+                   const LightSet& lights, const Shading& shading);
     void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                   FrameStats& stats) const override;
 
@@ -133,10 +138,22 @@ class PathIntegrator : public LightIntegrator {
     void add(LightPath& path, const Color& light, bool is_indirect) const;
     Color light_of_points(const Surface& surface, const Bsdf& bsdf, FrameStats& stats) const;
     /// @param group   of the sampler's numbers: the first of one for each light
-    Color light_of_spheres_and_suns(const Surface& surface, const Bsdf& bsdf,
-                                    const Sampler& sampler, std::uint32_t group,
-                                    FrameStats& stats) const;
+    Color light_of_suns_and_lamps(const Surface& surface, const Bsdf& bsdf, const Sampler& sampler,
+                                  std::uint32_t group, FrameStats& stats) const;
+    /// Through a random point of a disc of even radiance.
+    /// @param source   the sphere light that it is, or kNone
+    /// @param chance   that it was chosen
+    Color light_of_disc(const Surface& surface, const Bsdf& bsdf, const LightDisc& disc,
+                        const Color& radiance, std::uint32_t source, double chance,
+                        const Uniform3& u, FrameStats& stats) const;
+    Color light_of_body(const Surface& surface, const Bsdf& bsdf, const Lamp& lamp, double chance,
+                        const Uniform3& u, FrameStats& stats) const;
+    /// With which the choice of lamps gives the direction of a path's ray, toward what it meets.
+    double lamp_density(const LightPath& path) const;
     bool is_lit(const Ray& toward_light, FrameStats& stats) const;
+
+    const PlacedBodies& placed_;
+    Lamps lamps_;
 };
 
 /// The one that the picture's settings name.
