@@ -121,6 +121,8 @@ struct Settings {
     double filter_width = 1;  ///< of its support [pixels]
     double noise_target = 0;  ///< see PixelEstimate::noise(); 0: every pixel has `samples`
     int max_samples = 16;     ///< with a noise target
+    std::uint64_t seed = 0;   ///< of the samples' random numbers
+    bool lock_noise = false;  ///< every frame has the random numbers of frame 0
     Channels channels;
     Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]

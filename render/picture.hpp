@@ -24,6 +24,7 @@ struct Picture {
     /// When the shutter closes: poses, camera. Both, or none for one that is open for no time.
     const Bodies* closing = nullptr;
     const CameraDescription* closing_camera = nullptr;
+    int frame = 0;  ///< its number: frames have random numbers of their own
 };
 
 /// What goes into the header beside the pixels.

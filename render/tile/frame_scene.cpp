@@ -78,6 +78,8 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
       sheet_(picture.camera, picture.settings.width, picture.settings.height),
       rough_(picture.materials),
       filter_(picture.settings.filter, picture.settings.filter_width),
+      pattern_(
+          sample_pattern(picture.settings.seed, picture.settings.lock_noise ? 0 : picture.frame)),
       wants_color_(wants_color) {
     instants_.push_back(
         std::make_unique<Instant>(picture, picture.camera, sheet_, picture.bodies, rough_));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,6 +47,7 @@ class FrameScene {
     const PictureNeeds& needs() const { return needs_; }
     const SliceSheet& sheet() const { return sheet_; }
     const PixelFilter& filter() const { return filter_; }
+    std::uint64_t pattern() const { return pattern_; }  ///< of the samples, see sample_pattern()
     bool wants_color() const { return wants_color_; }  ///< for the image or the preview
 
     /// When the shutter opens: depth, normal, position and id are as they are then.
@@ -65,6 +67,7 @@ class FrameScene {
     SliceSheet sheet_;
     RoughReflections rough_;
     PixelFilter filter_;
+    std::uint64_t pattern_;
     bool wants_color_;
     std::vector<std::unique_ptr<Instant>> instants_;  ///< the opening one, then those of samples
     std::vector<SliceBounds> slice_;

@@ -170,10 +170,11 @@ View TileRays::centre(const Cell& cell, int x, int y) const {
 
 View TileRays::sample(const Cell& cell, int x, int y, int index) const {
     const auto number = static_cast<std::uint32_t>(index);
-    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
+    const Vec2 film =
+        Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number, scene_.pattern()));
     if (scene_.is_pinhole())
         return view_of(scene_.opening(), scene_.opening().rays.middle(cell, film));
-    const auto u = Sampler(x, y, number).group(kCameraGroup);
+    const auto u = Sampler(x, y, number, scene_.pattern()).group(kCameraGroup);
     const Instant& instant = scene_.at(u[3]);
     return view_of(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
 }
@@ -225,9 +226,10 @@ void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
 
 void TileRays::find_radiance(const SampleNumber& first) {
     samples_.clear();
+    const Sampler sampler(first.x, first.y, first.sample, scene_.pattern());
     for (std::uint32_t i = 0; i < views_.size(); ++i)
         samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
-                            Sampler(first.x, first.y, first.sample + i)});
+                            sampler.of(first.sample + i)});
     colors_.resize(views_.size());
     // Those of one instant together.
     for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {

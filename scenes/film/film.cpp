@@ -10,6 +10,7 @@
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
+#include "render/picture_needs.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
@@ -104,10 +105,11 @@ struct Exposure {
         if (closing->looks_like(opening, scene)) closing.reset();
     }
 
+    /// But for what is random in the picture.
     bool looks_like(const Exposure& other, const Scene& scene) const {
         return opening.looks_like(other.opening, scene) && !closing && !other.closing;
     }
-    render::Picture picture(const Scene& scene) const {
+    render::Picture picture(const Scene& scene, int frame) const {
         return {opening.bodies,
                 scene.appearance,
                 scene.materials,
@@ -115,7 +117,8 @@ struct Exposure {
                 scene.lights,
                 scene.render,
                 closing ? &closing->bodies : nullptr,
-                closing ? &closing->camera : nullptr};
+                closing ? &closing->camera : nullptr,
+                frame};
     }
 
   private:
@@ -124,7 +127,8 @@ struct Exposure {
     }
 };
 
-/// A finished frame. The next one may look the same: a still camera over a scene at rest.
+/// A finished frame. The next one may look the same: a still camera over a scene at rest, and
+/// nothing random in the picture or the noise locked.
 struct Shown {
     Exposure exposure;
     render::FrameFiles files;
@@ -195,8 +199,9 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             continue;
         }
         Exposure exposure(scene, poses, info.frame);
-        const render::Picture picture = exposure.picture(scene);
-        if (shown && exposure.looks_like(shown->exposure, scene)) {
+        const render::Picture picture = exposure.picture(scene, info.frame);
+        if (shown && !render::needs_of(picture).moving_noise &&
+            exposure.looks_like(shown->exposure, scene)) {
             render::copy_frame(shown->files, picture, info, files);
             ++report.copied;
         } else {

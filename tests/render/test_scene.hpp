@@ -25,11 +25,13 @@ struct TestScene {
     Lights lights;
     Settings settings;
     std::optional<Bodies> closing;  ///< poses when the shutter closes
+    int frame = 0;
 
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
                std::uint32_t material = 0);
     Picture picture() const {
         Picture picture = {bodies, appearance, materials, camera, lights, settings};
+        picture.frame = frame;
         if (closing) picture.closing = &*closing, picture.closing_camera = &camera;
         return picture;
     }
