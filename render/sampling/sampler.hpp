@@ -36,6 +36,7 @@ class Sampler {
   public:
     Sampler(int x, int y, std::uint32_t index, std::uint64_t pattern = 0);
 
+    std::uint32_t index() const { return index_; }
     /// That of another sample of the same pixel.
     Sampler of(std::uint32_t index) const {
         Sampler other = *this;

@@ -48,7 +48,7 @@ class FrameScene {
     const SliceSheet& sheet() const { return sheet_; }
     const PixelFilter& filter() const { return filter_; }
     std::uint64_t pattern() const { return pattern_; }  ///< of the samples, see sample_pattern()
-    bool wants_color() const { return wants_color_; }  ///< for the image or the preview
+    bool wants_color() const { return wants_color_; }   ///< for the image or the preview
 
     /// When the shutter opens: depth, normal, position and id are as they are then.
     const Instant& opening() const { return *instants_.front(); }

@@ -61,7 +61,7 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
 void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& plan) {
     const render::CameraDescription& c = scene.camera;
     const bool is_moving = !scene.camera_keys.empty();
-    const int samples = scene.render.samples, most = scene.render.most_samples();
+    const int samples = scene.render.least_samples(), most = scene.render.most_samples();
     plan.decide("lens", needs.lens, fmt::format("aperture = {}", c.aperture),
                 "aperture = 0: a pinhole");
     plan.decide("motion blur", c.shutter > 0 && (plan.moves || is_moving),

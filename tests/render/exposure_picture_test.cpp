@@ -200,9 +200,8 @@ TEST(NoiseTarget, PixelsGetSamplesWhereTheyAreNoisy) {
             const auto samples = static_cast<int>(image.at("samples", x, y));
             ASSERT_GE(samples, 8);
             ASSERT_LE(samples, 64);
-            EXPECT_TRUE(samples == 64 || samples % 16 == 8) << samples;
             least += samples == 8, most += samples == 64;
-            // Flat pixels stop at once.
+            // Flat pixels get no more.
             if (image.at("variance.R", x, y) == 0 && image.at("variance.G", x, y) == 0 &&
                 image.at("variance.B", x, y) == 0) {
                 EXPECT_EQ(samples, 8);

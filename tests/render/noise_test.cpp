@@ -96,5 +96,54 @@ TEST(Noise, OfAFrameDoesNotDependOnTilesAndCrop) {
         for (int x = 7; x < 40; ++x) ASSERT_EQ(part.at("G", x, y), whole.at("G", x, y));
 }
 
+/// A glowing ball above a floor, path traced with one bounce: the camera sees a spot of the floor
+/// right below it, where the closed form holds: albedo L sin^3, with the sine of the ball's rim.
+struct GlowingBall {
+    static constexpr double kAlbedo = 0.8, kGlow = 8, kRadius = 1;
+    TestScene scene;
+    double exact;
+
+    explicit GlowingBall(double distance)
+        : exact(kAlbedo * kGlow * std::pow(kRadius / distance, 3)) {
+        scene.materials.resize(2);
+        scene.materials[0].albedo = Color::Constant(kAlbedo);
+        scene.materials[1].albedo = Color::Zero();
+        scene.materials[1].emission = Color::Constant(kGlow);
+        scene.add(Hyperplane{Vec4::UnitY(), 0}, Vec4::Zero());
+        scene.add(Hypersphere{kRadius}, {0, distance, 0, 0}, {}, 1);
+        scene.camera.position = {0, 0.5, -4, 0};
+        scene.camera.field_of_view = 0.03;
+        scene.settings.integrator = Integrator::kPath;
+        scene.settings.intersector = Intersector::kAnalytic;
+        scene.settings.bounces = 1;
+        scene.settings.samples = 16;
+        scene.settings.noise_target = 0.02, scene.settings.max_samples = 32;
+        scene.settings.channels.samples = true;
+    }
+    /// Mean of the picture over the exact value, less 1, within 4 deviations.
+    void expect_exact(int width, int height, double most_sigma) {
+        scene.settings.width = width, scene.settings.height = height;
+        const Image image = picture_of(scene);
+        double sum = 0, squares = 0, samples = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const double off = image.at("G", x, y) / exact - 1;
+                sum += off, squares += off * off, samples += image.at("samples", x, y);
+            }
+        const double count = width * height, sigma = std::sqrt(squares) / count;
+        EXPECT_LT(sigma, most_sigma);
+        EXPECT_NEAR(sum / count, 0, 4 * sigma);
+        // Some pixels stop, some go on.
+        EXPECT_GT(samples / count, 17);
+        EXPECT_LT(samples / count, 31.9);
+    }
+};
+
+TEST(NoiseTarget, AFoundLightIsAsBrightAsItIs) { GlowingBall(2.6).expect_exact(96, 72, 0.02); }
+
+TEST(NoiseTargetSlow, AFoundLightIsAsBrightAsItIsToHalfAPercent) {
+    GlowingBall(2.4).expect_exact(480, 360, 0.005 / 4);
+}
+
 }  // namespace
 }  // namespace tesserae::render
