@@ -31,8 +31,8 @@ struct Instant {
     Instant(const Instant&) = delete;  // its parts refer to each other
 };
 
-/// At how many instants a frame with an open shutter sees its bodies at most: 64, one a sample, and
-/// no more than keep the memory for their trees within bounds.
+/// At how many instants a frame with an open shutter sees its bodies at most: 256, one a sample,
+/// and no more than keep the memory for their trees within bounds.
 int most_instants(std::size_t bodies, int samples);
 
 /// What all tiles of a frame share. While the shutter is open the scene is seen at so many instants

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
@@ -96,18 +97,33 @@ struct Moment {
 /// What a frame shows: the shutter opens and, if it is open for any time, closes.
 struct Exposure {
     Moment opening;
-    std::optional<Moment> closing;
+    std::vector<render::ShutterMoment> path;
 
     Exposure(const Scene& scene, Poses& poses, int frame)
         : opening(moment(scene, poses, frame_instant(scene, frame))) {
         if (scene.camera.shutter == 0) return;
-        closing = moment(scene, poses, closing_instant(scene, frame));
-        if (closing->looks_like(opening, scene)) closing.reset();
+        const double begin = frame_instant(scene, frame).time;
+        const double rate = scene.physics ? scene.physics->steps_per_second : 1;
+        bool is_still = true;
+        const auto add = [&](const FrameInstant& instant) {
+            Moment at = moment(scene, poses, instant);
+            is_still = is_still && at.looks_like(opening, scene);
+            path.push_back({instant.time - begin, std::move(at.bodies), at.camera});
+        };
+        for (const std::uint64_t step : shutter_steps(scene, frame))
+            if (poses.has(step)) add({static_cast<double>(step) / rate, step, 0});
+        // Past the last step all stands still.
+        const FrameInstant close = closing_instant(scene, frame);
+        const double last = static_cast<double>(step_count(scene)) / rate;
+        if (close.step == step_count(scene) && begin < last && last < close.time)
+            add({last, close.step, 0});
+        add(close);
+        if (is_still) path.clear();
     }
 
     /// But for what is random in the picture.
     bool looks_like(const Exposure& other, const Scene& scene) const {
-        return opening.looks_like(other.opening, scene) && !closing && !other.closing;
+        return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty();
     }
     render::Picture picture(const Scene& scene, int frame) const {
         return {opening.bodies,
@@ -116,8 +132,7 @@ struct Exposure {
                 opening.camera,
                 scene.lights,
                 scene.render,
-                closing ? &closing->bodies : nullptr,
-                closing ? &closing->camera : nullptr,
+                path,
                 frame};
     }
 

@@ -24,7 +24,8 @@ struct TestScene {
     CameraDescription camera;
     Lights lights;
     Settings settings;
-    std::optional<Bodies> closing;  ///< poses when the shutter closes
+    std::optional<Bodies> closing;                 ///< poses when the shutter closes, after 1 s
+    mutable std::vector<ShutterMoment> path = {};  ///< or what the shutter sees
     int frame = 0;
 
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
@@ -32,7 +33,8 @@ struct TestScene {
     Picture picture() const {
         Picture picture = {bodies, appearance, materials, camera, lights, settings};
         picture.frame = frame;
-        if (closing) picture.closing = &*closing, picture.closing_camera = &camera;
+        if (closing) path = {{1, *closing, camera}};
+        picture.path = path;
         return picture;
     }
 };
