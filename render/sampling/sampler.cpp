@@ -81,14 +81,14 @@ std::uint64_t pixel_number(int x, int y) {
 /// 2^64 over the golden ratio: multiples of it differ in all bits.
 constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
-/// A hash of a pixel and the pattern of its samples. The pixel is mixed first: were the pattern
-/// added to its number, the patterns of two frames could be one pattern, moved over the film.
+}  // namespace
+
 std::uint64_t pixel_hash(int x, int y, std::uint64_t pattern) {
+    // Were the pattern added to the pixel's number, those of two frames could be one pattern that
+    // is moved over the film.
     const std::uint64_t pixel = mixed(pixel_number(x, y) + kGolden);
     return pattern == 0 ? pixel : mixed(pixel + pattern);
 }
-
-}  // namespace
 
 std::uint64_t sample_pattern(std::uint64_t seed, int frame) {
     // mixed(0) is 0. Of one seed no two frames have one pattern.
@@ -97,15 +97,14 @@ std::uint64_t sample_pattern(std::uint64_t seed, int frame) {
 
 std::uint64_t second_pattern(std::uint64_t pattern) { return mixed(~pattern); }
 
-Vec2 pixel_sample(int x, int y, std::uint32_t index, std::uint64_t pattern) {
-    const std::uint64_t seed = pixel_hash(x, y, pattern);
+Vec2 pixel_sample(std::uint64_t seed, std::uint32_t index) {
     return {to_unit(scrambled_reversed(index, static_cast<std::uint32_t>(seed))),
             to_unit(scrambled_reversed(sobol_second_reversed(index),
                                        static_cast<std::uint32_t>(seed >> 32)))};
 }
 
-Sampler::Sampler(int x, int y, std::uint32_t index, std::uint64_t pattern)
-    : pixel_(mixed(pixel_hash(x, y, pattern))), index_(index) {}
+Sampler::Sampler(std::uint64_t pixel_hash, std::uint32_t index)
+    : pixel_(mixed(pixel_hash)), index_(index) {}
 
 std::array<double, 4> Sampler::group(std::uint32_t group) const {
     const std::uint64_t a = mixed(pixel_ + kGolden * group), b = mixed(a + kGolden),

@@ -15,6 +15,9 @@ std::uint64_t sample_pattern(std::uint64_t seed, int frame);
 /// The pattern of a second, independent set of samples beside those of `pattern`.
 std::uint64_t second_pattern(std::uint64_t pattern);
 
+/// A hash of a pixel and the pattern of its samples, from which all their numbers are made.
+std::uint64_t pixel_hash(int x, int y, std::uint64_t pattern);
+
 /// Where sample `index` of pixel (x, y) lies inside the pixel: a point of [0, 1)^2. A function of
 /// its arguments alone, pixels counted from the full frame's corner, so that crop, tile size and
 /// threads change nothing.
@@ -22,7 +25,10 @@ std::uint64_t second_pattern(std::uint64_t pattern);
 /// scrambling: every 2^k x 2^(m-k) grid of equal cells holds one point of 2^m.
 /// Source: Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020, listings 1 to 3; the hash
 /// constants are those of its corrected listing (Vegdahl 2021).
-Vec2 pixel_sample(int x, int y, std::uint32_t index, std::uint64_t pattern = 0);
+Vec2 pixel_sample(std::uint64_t pixel_hash, std::uint32_t index);
+inline Vec2 pixel_sample(int x, int y, std::uint32_t index, std::uint64_t pattern = 0) {
+    return pixel_sample(pixel_hash(x, y, pattern), index);
+}
 
 /// The numbers of [0, 1) that one sample of a pixel needs beyond its place in the pixel, in groups
 /// of four. Group g of sample i is point i of a four-dimensional Sobol sequence, whose order is
@@ -34,7 +40,9 @@ Vec2 pixel_sample(int x, int y, std::uint32_t index, std::uint64_t pattern = 0);
 /// Joe and Kuo 2008, dimensions 1 to 4.
 class Sampler {
   public:
-    Sampler(int x, int y, std::uint32_t index, std::uint64_t pattern = 0);
+    Sampler(std::uint64_t pixel_hash, std::uint32_t index);
+    Sampler(int x, int y, std::uint32_t index, std::uint64_t pattern = 0)
+        : Sampler(render::pixel_hash(x, y, pattern), index) {}
 
     std::uint32_t index() const { return index_; }
     /// That of another sample of the same pixel.

@@ -28,8 +28,11 @@ Imath::half to_half(double v) {
     return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
 }
 
-/// A view ray and what it meets.
+/// A view ray and what it meets. Made in place: copies would wait for the numbers just written.
 struct View {
+    View(const Instant& i, const ViewRay& view_ray, double far)
+        : instant(&i), in_slice(view_ray), ray(i.camera.to_world(view_ray, far)) {}
+
     const Instant* instant;
     ViewRay in_slice;
     Ray ray;  ///< the same, about the instant's camera
@@ -77,9 +80,12 @@ class TileRays {
 
     Averages adapted(const Cell& cell, int x, int y);
     void add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x, int y);
-    View centre(const Cell& cell, int x, int y) const;
-    View sample(const Cell& cell, int x, int y, std::uint64_t pattern, int index) const;
-    View view_of(const Instant& instant, const ViewRay& ray) const;
+    // To views_:
+    void add_centre(const Cell& cell, int x, int y);
+    void add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index);
+    void add_view(const Instant& instant, const ViewRay& ray) {
+        views_.emplace_back(instant, ray, settings_.max_distance);
+    }
     // Of views_:
     void trace();
     void add_radiance(Filtered& sum, const Half& half, int x, int y);
@@ -165,7 +171,8 @@ Pixel TileRays::pixel(int x, int y) {
 
     Filtered sum;
     if (wants_centre_) {
-        views_.assign(1, centre(*cell, x, y));
+        views_.clear();
+        add_centre(*cell, x, y);
         trace();
         store_view(views_.front(), pixel);
         if (most_ == 1) add_radiance(sum, whole_, x, y);
@@ -206,32 +213,29 @@ Averages TileRays::adapted(const Cell& cell, int x, int y) {
 /// Samples of a half up to so many.
 void TileRays::add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x,
                            int y) {
+    const std::uint64_t hash = pixel_hash(x, y, half.pattern);
     while (sum.count < count) {
         const int begin = sum.count, end = std::min(begin + kBatch, count);
         views_.clear();
-        for (int i = begin; i < end; ++i) views_.push_back(sample(cell, x, y, half.pattern, i));
+        for (int i = begin; i < end; ++i) add_sample(cell, x, y, hash, i);
         trace();
         add_radiance(sum, half, x, y);
     }
 }
 
-View TileRays::centre(const Cell& cell, int x, int y) const {
+void TileRays::add_centre(const Cell& cell, int x, int y) {
     const Instant& opening = scene_.opening();
-    return view_of(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+    add_view(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
 }
 
-View TileRays::sample(const Cell& cell, int x, int y, std::uint64_t pattern, int index) const {
+void TileRays::add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index) {
     const auto number = static_cast<std::uint32_t>(index);
-    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number, pattern));
+    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(hash, number));
     if (scene_.is_pinhole())
-        return view_of(scene_.opening(), scene_.opening().rays.middle(cell, film));
-    const auto u = Sampler(x, y, number, pattern).group(kCameraGroup);
+        return add_view(scene_.opening(), scene_.opening().rays.middle(cell, film));
+    const auto u = Sampler(hash, number).group(kCameraGroup);
     const Instant& instant = scene_.at(u[3]);
-    return view_of(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
-}
-
-View TileRays::view_of(const Instant& instant, const ViewRay& ray) const {
-    return {&instant, ray, instant.camera.to_world(ray, settings_.max_distance), {}};
+    add_view(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
 }
 
 void TileRays::trace() {
