@@ -119,8 +119,10 @@ struct Settings {
     int tile = 32;
     FilterKind filter = FilterKind::kBox;
     double filter_width = 1;  ///< of its support [pixels]
-    double noise_target = 0;  ///< see PixelEstimate::noise(); 0: every pixel has `samples`
+    double noise_target = 0;  ///< see sample_adaptively(); 0: every pixel has `samples`
     int max_samples = 16;     ///< with a noise target
+    std::uint64_t seed = 0;   ///< of the samples' random numbers
+    bool lock_noise = false;  ///< every frame has the random numbers of frame 0
     Channels channels;
     Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]
@@ -128,7 +130,10 @@ struct Settings {
 
     /// The pixels that are rendered: all, or the crop.
     Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
-    /// Of a pixel.
+    /// Of a pixel. With a noise target a pixel has 8 at least: fewer tell nothing of its noise.
+    int least_samples() const {
+        return noise_target > 0 ? std::min(std::max(samples, 8), most_samples()) : samples;
+    }
     int most_samples() const { return noise_target > 0 ? std::max(samples, max_samples) : samples; }
 };
 

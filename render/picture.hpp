@@ -13,6 +13,13 @@
 // What a frame is asked to show, and what was counted while it was rendered.
 namespace tesserae::render {
 
+/// A moment while the shutter is open.
+struct ShutterMoment {
+    double time;  ///< since the opening [s], > 0
+    Bodies bodies;
+    CameraDescription camera;
+};
+
 /// Everything that decides a frame's pixels. Refers to its parts; they must outlive it.
 struct Picture {
     const Bodies& bodies;                    ///< poses at the frame's time, when the shutter opens
@@ -21,9 +28,10 @@ struct Picture {
     const CameraDescription& camera;
     const Lights& lights;
     const Settings& settings;
-    /// When the shutter closes: poses, camera. Both, or none for one that is open for no time.
-    const Bodies* closing = nullptr;
-    const CameraDescription* closing_camera = nullptr;
+    /// What is known of the time after the opening, ascending: the last moment is when the shutter
+    /// closes; none for one that is open for no time. Between moments bodies move evenly.
+    std::span<const ShutterMoment> path = {};
+    int frame = 0;  ///< its number: frames have random numbers of their own
 };
 
 /// What goes into the header beside the pixels.

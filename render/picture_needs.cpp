@@ -33,6 +33,11 @@ PictureNeeds needs_of(const Picture& picture) {
     needs.lens = camera.aperture > 0;
     needs.slices = camera.slices > 1;
     needs.thick_slice = camera.slice_thickness > 0 && !needs.slices;
+    // Of one sample only what follows the view ray is random.
+    const bool anything =
+        any_visible(true) || any_visible(false) || !picture.lights.spheres.empty();
+    const bool is_random = needs.bounce_rays || (settings.most_samples() > 1 && anything);
+    needs.moving_noise = is_random && !settings.lock_noise;
     return needs;
 }
 

@@ -14,6 +14,7 @@ struct PictureNeeds {
     bool lens;          ///< view rays start anywhere in its disc
     bool slices;        ///< several, side by side
     bool thick_slice;   ///< view rays start anywhere in it
+    bool moving_noise;  ///< something is random, and differs from frame to frame
 
     bool any_rays_off_slice() const { return shadow_rays || bounce_rays; }
 };

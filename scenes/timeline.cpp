@@ -16,6 +16,11 @@ constexpr int kMaxFrames = 10'000'000;
 /// k * steps_per_second / frames_per_second loses to rounding, with room to spare.
 constexpr double kSameStep = 1e-12;
 
+/// Of a frame, between the opening and the closing of its shutter: a bounce is known to 1/16 of it.
+constexpr std::uint64_t kMostShutterSteps = 16;
+/// Bodies at all of them together (some 200 bytes each).
+constexpr std::uint64_t kMostShutterBodies = 2'000'000;
+
 [[noreturn]] void bad_frames(const std::string& text, const std::string& why) {
     throw InputError(fmt::format(
         "--frames {}: {}; expected ranges such as 0-239x2,300 (first-last, xstep)", text, why));
@@ -81,7 +86,31 @@ FrameInstant closing_instant(const Scene& scene, int frame) {
     return instant_of(scene, frame + scene.camera.shutter);
 }
 
-std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames) {
+std::vector<std::uint64_t> shutter_steps(const Scene& scene, int frame) {
+    std::vector<std::uint64_t> steps;
+    if (scene.camera.shutter == 0 || !scene.physics) return steps;
+    const FrameInstant open = frame_instant(scene, frame), close = closing_instant(scene, frame);
+    const std::uint64_t end = close.step + (close.fraction > 0 ? 1 : 0);
+    if (end < open.step + 2) return steps;
+    const std::uint64_t count = end - open.step - 1;
+    const std::uint64_t most = std::min(
+        kMostShutterSteps, kMostShutterBodies / std::max<std::uint64_t>(1, scene.bodies.size()));
+    if (most == 0) return steps;
+    const std::uint64_t stride = (count + most - 1) / most;
+    for (std::uint64_t step = open.step + stride; step < end; step += stride) steps.push_back(step);
+    return steps;
+}
+
+namespace {
+
+void sort_without_repeats(std::vector<std::uint64_t>& steps) {
+    std::sort(steps.begin(), steps.end());
+    steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<int>& frames) {
     std::vector<std::uint64_t> steps;
     const auto add = [&](const FrameInstant& at) {
         steps.push_back(at.step);
@@ -91,8 +120,17 @@ std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vecto
         add(frame_instant(scene, frame));
         if (scene.camera.shutter > 0) add(closing_instant(scene, frame));
     }
-    std::sort(steps.begin(), steps.end());
-    steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+    sort_without_repeats(steps);
+    return steps;
+}
+
+std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames) {
+    std::vector<std::uint64_t> steps = steps_needed(scene, frames);
+    for (int frame : frames) {
+        const auto more = shutter_steps(scene, frame);
+        steps.insert(steps.end(), more.begin(), more.end());
+    }
+    sort_without_repeats(steps);
     return steps;
 }
 

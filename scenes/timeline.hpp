@@ -26,7 +26,15 @@ FrameInstant frame_instant(const Scene& scene, int frame);
 /// When the frame's shutter closes; no later than the last step.
 FrameInstant closing_instant(const Scene& scene, int frame);
 
-/// Steps that the given frames need, ascending, without repeats.
+/// Steps strictly between the opening and the closing of a frame's shutter, ascending: all, but
+/// every so many where they would be more than 16, or too many for memory. A picture can do
+/// without; with them blurred bodies turn and bounce as they do.
+std::vector<std::uint64_t> shutter_steps(const Scene& scene, int frame);
+
+/// Steps that the given frames cannot do without, ascending, without repeats.
+std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<int>& frames);
+
+/// The same with their shutter_steps().
 std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames);
 
 /// Ranges "a-b", "a-bxs" and single numbers, separated by commas, in ascending order without

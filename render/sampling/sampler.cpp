@@ -83,16 +83,31 @@ constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
 }  // namespace
 
-Vec2 pixel_sample(int x, int y, std::uint32_t index) {
-    const std::uint64_t seed = mixed(pixel_number(x, y) + kGolden);
+std::uint64_t pixel_hash(int x, int y, std::uint64_t pattern) {
+    // Were the pattern added to the pixel's number, those of two frames could be one pattern that
+    // is moved over the film.
+    const std::uint64_t pixel = mixed(pixel_number(x, y) + kGolden);
+    return pattern == 0 ? pixel : mixed(pixel + pattern);
+}
+
+std::uint64_t sample_pattern(std::uint64_t seed, int frame) {
+    // mixed(0) is 0. Of one seed no two frames have one pattern.
+    return mixed(mixed(seed) + kGolden * static_cast<std::uint64_t>(frame));
+}
+
+std::uint64_t second_pattern(std::uint64_t pattern) { return mixed(~pattern); }
+
+Vec2 pixel_sample(std::uint64_t seed, std::uint32_t index) {
     return {to_unit(scrambled_reversed(index, static_cast<std::uint32_t>(seed))),
             to_unit(scrambled_reversed(sobol_second_reversed(index),
                                        static_cast<std::uint32_t>(seed >> 32)))};
 }
 
+Sampler::Sampler(std::uint64_t pixel_hash, std::uint32_t index)
+    : pixel_(mixed(pixel_hash)), index_(index) {}
+
 std::array<double, 4> Sampler::group(std::uint32_t group) const {
-    const std::uint64_t pixel = mixed(mixed(pixel_number(x_, y_) + kGolden));
-    const std::uint64_t a = mixed(pixel + kGolden * group), b = mixed(a + kGolden),
+    const std::uint64_t a = mixed(pixel_ + kGolden * group), b = mixed(a + kGolden),
                         c = mixed(b + kGolden);
     const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v); };
     const auto high = [](std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32); };

@@ -9,7 +9,7 @@ namespace {
 /// A frame holds at most so many bodies, summed over its instants (some 300 bytes each), but two
 /// instants of any scene.
 constexpr std::size_t kMostBodies = 1'000'000;
-constexpr std::size_t kMostInstants = 64;
+constexpr std::size_t kMostInstants = 256;
 
 CameraDescription between(const CameraDescription& a, const CameraDescription& b, double part) {
     if (a == b) return a;
@@ -22,16 +22,49 @@ CameraDescription between(const CameraDescription& a, const CameraDescription& b
     return c;
 }
 
+/// The scene at the opening and at the moments after it, one after the other.
+class OpenShutter {
+  public:
+    explicit OpenShutter(const Picture& picture) : picture_(picture) {}
+
+    std::size_t parts() const { return picture_.path.size(); }
+    double time(std::size_t i) const { return i == 0 ? 0 : picture_.path[i - 1].time; }
+    const Bodies& bodies(std::size_t i) const {
+        return i == 0 ? picture_.bodies : picture_.path[i - 1].bodies;
+    }
+    const CameraDescription& camera(std::size_t i) const {
+        return i == 0 ? picture_.camera : picture_.path[i - 1].camera;
+    }
+    /// @param part   of the time from opening to closing
+    /// @param poses   get the bodies'
+    CameraDescription at(double part, Bodies& poses) const {
+        const double now = part * time(parts());
+        std::size_t i = 0;
+        while (i + 1 < parts() && now >= time(i + 1)) ++i;
+        const double length = time(i + 1) - time(i), in_part = (now - time(i)) / length;
+        follow_poses(bodies(i), bodies(i + 1), length, in_part, poses);
+        return between(camera(i), camera(i + 1), in_part);
+    }
+
+  private:
+    const Picture& picture_;
+};
+
 /// How far a body's picture moves at most, about [pixels].
 double film_motion(const Picture& picture, BodyId id, const Camera& camera) {
-    const Bodies &a = picture.bodies, &b = *picture.closing;
-    const double moved = (b.position[id] - a.position[id]).norm();
-    double turned = 0;
-    if (!(a.rotor[id] == b.rotor[id]))
-        turned =
-            bounding_radius(a.type_of(id).shape) * norm(log(b.rotor[id] * reverse(a.rotor[id])));
+    const OpenShutter open(picture);
+    const double radius = bounding_radius(picture.bodies.type_of(id).shape);
+    double moved = 0, turned = 0;
+    for (std::size_t i = 0; i < open.parts(); ++i) {
+        const Bodies &a = open.bodies(i), &b = open.bodies(i + 1);
+        moved += (b.position[id] - a.position[id]).norm();
+        if (a.rotor[id] == b.rotor[id]) continue;
+        const double length = open.time(i + 1) - open.time(i);
+        turned += radius * std::max(norm(b.angular_velocity[id]) * length,
+                                    2 * norm(log(b.rotor[id] * reverse(a.rotor[id]))));
+    }
     if (moved + turned == 0) return 0;
-    const Vec4 at = camera.to_camera(a.position[id] - camera.origin());
+    const Vec4 at = camera.to_camera(picture.bodies.position[id] - camera.origin());
     const double depth = std::max(at.z() - moved, 0.1 * at.head<3>().norm());
     return (moved + turned) / (depth * camera.pixel_size());
 }
@@ -42,9 +75,10 @@ BodyTree tree_of(const Picture& picture, const PlacedBodies& placed) {
 }
 
 int instant_count(const Picture& picture, const Camera& camera) {
-    if (picture.closing == nullptr) return 1;
+    if (picture.path.empty()) return 1;
     const int most = most_instants(picture.bodies.size(), picture.settings.most_samples());
-    if (!(picture.camera == *picture.closing_camera)) return most;
+    for (const ShutterMoment& moment : picture.path)
+        if (!(moment.camera == picture.camera)) return most;
     double pixels = 0;
     for (BodyId id = 0; id < picture.bodies.size(); ++id)
         if (picture.appearance[picture.bodies.type[id]].visible)
@@ -78,6 +112,8 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
       sheet_(picture.camera, picture.settings.width, picture.settings.height),
       rough_(picture.materials),
       filter_(picture.settings.filter, picture.settings.filter_width),
+      pattern_(
+          sample_pattern(picture.settings.seed, picture.settings.lock_noise ? 0 : picture.frame)),
       wants_color_(wants_color) {
     instants_.push_back(
         std::make_unique<Instant>(picture, picture.camera, sheet_, picture.bodies, rough_));
@@ -85,11 +121,8 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
     if (count > 1) {
         Bodies bodies = picture.bodies;
         for (int k = 0; k < count; ++k) {
-            const double part = (k + 0.5) / count;
-            interpolate_poses(picture.bodies, *picture.closing, part, bodies);
-            instants_.push_back(std::make_unique<Instant>(
-                picture, between(picture.camera, *picture.closing_camera, part), sheet_, bodies,
-                rough_));
+            const CameraDescription camera = OpenShutter(picture).at((k + 0.5) / count, bodies);
+            instants_.push_back(std::make_unique<Instant>(picture, camera, sheet_, bodies, rough_));
         }
     }
     const double far = picture.settings.max_distance;

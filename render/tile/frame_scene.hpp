@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,8 +31,8 @@ struct Instant {
     Instant(const Instant&) = delete;  // its parts refer to each other
 };
 
-/// At how many instants a frame with an open shutter sees its bodies at most: 64, one a sample, and
-/// no more than keep the memory for their trees within bounds.
+/// At how many instants a frame with an open shutter sees its bodies at most: 256, one a sample,
+/// and no more than keep the memory for their trees within bounds.
 int most_instants(std::size_t bodies, int samples);
 
 /// What all tiles of a frame share. While the shutter is open the scene is seen at so many instants
@@ -46,7 +47,8 @@ class FrameScene {
     const PictureNeeds& needs() const { return needs_; }
     const SliceSheet& sheet() const { return sheet_; }
     const PixelFilter& filter() const { return filter_; }
-    bool wants_color() const { return wants_color_; }  ///< for the image or the preview
+    std::uint64_t pattern() const { return pattern_; }  ///< of the samples, see sample_pattern()
+    bool wants_color() const { return wants_color_; }   ///< for the image or the preview
 
     /// When the shutter opens: depth, normal, position and id are as they are then.
     const Instant& opening() const { return *instants_.front(); }
@@ -65,6 +67,7 @@ class FrameScene {
     SliceSheet sheet_;
     RoughReflections rough_;
     PixelFilter filter_;
+    std::uint64_t pattern_;
     bool wants_color_;
     std::vector<std::unique_ptr<Instant>> instants_;  ///< the opening one, then those of samples
     std::vector<SliceBounds> slice_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/description.hpp"
 
@@ -28,13 +29,15 @@ class PixelEstimate {
         if (count_ < 2) return Color::Zero();
         return squares_ / (static_cast<double>(count_) * (count_ - 1));
     }
-    /// Standard error of the mean luminance as it shows in a picture that is encoded by its square
-    /// root (nearly sRGB): in parts of white. Infinite with fewer than two samples.
-    double noise() const {
+    /// How many samples bring the noise of their mean down to `target`: the standard error of its
+    /// luminance as it shows in a picture that is encoded by its square root (nearly sRGB), in
+    /// parts of white. What is darker than its error is encoded as if it were that bright. Infinite
+    /// with fewer than two samples.
+    double samples_for(double target) const {
         if (count_ < 2) return std::numeric_limits<double>::infinity();
-        const double error =
-            std::sqrt(bright_squares_ / (static_cast<double>(count_) * (count_ - 1)));
-        return error == 0 ? 0 : error / (2 * std::sqrt(std::max(bright_mean_, error)));
+        if (bright_squares_ == 0) return 0;
+        const double error = 2 * target * std::sqrt(std::max(bright_mean_, 4 * target * target));
+        return bright_squares_ / (count_ - 1) / (error * error);
     }
 
   private:

@@ -11,12 +11,13 @@
 #include "render/integrator/integrator.hpp"
 #include "render/sampling/sampler.hpp"
 #include "render/scene/film_list.hpp"
+#include "render/tile/adaptive.hpp"
 #include "render/tile/pixel_estimate.hpp"
 
 namespace tesserae::render {
 namespace {
 
-/// Samples between two looks at a pixel's noise; and view rays that are traced together.
+/// View rays that are traced together.
 constexpr int kBatch = 16;
 /// The group of a sample's numbers that the camera uses; scattering counts from 0.
 constexpr std::uint32_t kCameraGroup = 0xffffffffu;
@@ -27,20 +28,41 @@ Imath::half to_half(double v) {
     return Imath::half(static_cast<float>(std::clamp(v, -kHalfMax, kHalfMax)));
 }
 
-/// A view ray and what it meets.
+/// A view ray and what it meets. Made in place: copies would wait for the numbers just written.
 struct View {
+    View(const Instant& i, const ViewRay& view_ray, double far)
+        : instant(&i), in_slice(view_ray), ray(i.camera.to_world(view_ray, far)) {}
+
     const Instant* instant;
     ViewRay in_slice;
     Ray ray;  ///< the same, about the instant's camera
     std::optional<Surface> surface;
 };
 
-/// What is averaged over a pixel's samples.
+/// Sums over a pixel's samples, or over one of their halves.
 struct Filtered {
     PixelEstimate color;
     Color albedo = Color::Zero();
     double alpha = 0;
     int count = 0;
+};
+
+/// What is averaged over a pixel's samples.
+struct Averages {
+    Color color, variance, albedo;
+    double alpha;
+    int count;
+};
+
+/// Samples of a pixel with random numbers of one pattern. In reports of samples, those of a pixel
+/// are counted with the halves in turn.
+struct Half {
+    std::uint64_t pattern;
+    std::uint32_t first = 0, stride = 1;
+
+    std::uint32_t number(int index) const {
+        return first + stride * static_cast<std::uint32_t>(index);
+    }
 };
 
 /// The rays of one tile, window by window of the size of a film list.
@@ -56,19 +78,25 @@ class TileRays {
   private:
     using Cell = SliceSheet::Cell;
 
-    int samples_wanted(const Filtered& sum) const;
-    View centre(const Cell& cell, int x, int y) const;
-    View sample(const Cell& cell, int x, int y, int index) const;
-    View view_of(const Instant& instant, const ViewRay& ray) const;
+    Averages adapted(const Cell& cell, int x, int y);
+    void add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x, int y);
+    // To views_:
+    void add_centre(const Cell& cell, int x, int y);
+    void add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index);
+    void add_view(const Instant& instant, const ViewRay& ray) {
+        views_.emplace_back(instant, ray, settings_.max_distance);
+    }
     // Of views_:
     void trace();
-    void add_radiance(Filtered& sum, const SampleNumber& first);
-    void find_radiance(const SampleNumber& first);
+    void add_radiance(Filtered& sum, const Half& half, int x, int y);
+    void find_radiance(const Sampler& first);
 
     const FrameScene& scene_;
     const Tile& tile_;
     const Settings& settings_;
-    int least_, most_;  ///< samples of a pixel
+    Half whole_;
+    std::array<Half, 2> halves_;  ///< for adaptive sampling
+    int least_, most_;            ///< samples of a pixel
     bool wants_centre_, wants_samples_;
     FilmList list_;
     std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
@@ -89,16 +117,25 @@ void store_view(const View& view, Pixel& pixel) {
     pixel.id = view.instant->placed.bodies[view.surface->body].id + 1;
 }
 
-void store_filtered(const Filtered& sum, Pixel& pixel) {
-    if (sum.count == 0) return;
-    const Color variance = sum.color.variance();
+Averages averages_of(const Filtered& sum) {
+    return {sum.color.mean(), sum.color.variance(), sum.albedo / sum.count, sum.alpha / sum.count,
+            sum.count};
+}
+
+/// Of two independent sets of samples, each with the same weight whatever its number.
+Averages middle_of(const Averages& a, const Averages& b) {
+    return {0.5 * (a.color + b.color), 0.25 * (a.variance + b.variance),
+            0.5 * (a.albedo + b.albedo), 0.5 * (a.alpha + b.alpha), a.count + b.count};
+}
+
+void store_averages(const Averages& averages, Pixel& pixel) {
     for (int i = 0; i < 3; ++i) {
-        pixel.color[i] = to_half(sum.color.mean()[i]);
-        pixel.albedo[i] = to_half(sum.albedo[i] / sum.count);
-        pixel.variance[i] = static_cast<float>(variance[i]);
+        pixel.color[i] = to_half(averages.color[i]);
+        pixel.albedo[i] = to_half(averages.albedo[i]);
+        pixel.variance[i] = static_cast<float>(averages.variance[i]);
     }
-    pixel.alpha = to_half(sum.alpha / sum.count);
-    pixel.samples = static_cast<std::uint32_t>(sum.count);
+    pixel.alpha = to_half(averages.alpha);
+    pixel.samples = static_cast<std::uint32_t>(averages.count);
 }
 
 }  // namespace
@@ -134,52 +171,71 @@ Pixel TileRays::pixel(int x, int y) {
 
     Filtered sum;
     if (wants_centre_) {
-        views_.assign(1, centre(*cell, x, y));
+        views_.clear();
+        add_centre(*cell, x, y);
         trace();
         store_view(views_.front(), pixel);
-        if (most_ == 1) add_radiance(sum, {y, x, 0});
+        if (most_ == 1) add_radiance(sum, whole_, x, y);
     }
-    while (wants_samples_ && sum.count < samples_wanted(sum)) {
-        const int begin = sum.count, end = std::min(begin + kBatch, samples_wanted(sum));
-        views_.clear();
-        for (int i = begin; i < end; ++i) views_.push_back(sample(*cell, x, y, i));
-        trace();
-        add_radiance(sum, {y, x, static_cast<std::uint32_t>(begin)});
+    if (wants_samples_ && most_ > least_) {
+        store_averages(adapted(*cell, x, y), pixel);
+        return pixel;
     }
-    store_filtered(sum, pixel);
+    if (wants_samples_) add_samples(sum, whole_, most_, *cell, x, y);
+    if (sum.count > 0) store_averages(averages_of(sum), pixel);
     return pixel;
 }
 
 TileRays::TileRays(const FrameScene& scene, const Tile& tile)
-    : scene_(scene), tile_(tile), settings_(scene.picture().settings), least_(settings_.samples) {
+    : scene_(scene),
+      tile_(tile),
+      settings_(scene.picture().settings),
+      whole_({scene.pattern()}),
+      halves_({Half{scene.pattern(), 0, 2}, Half{second_pattern(scene.pattern()), 1, 2}}),
+      least_(settings_.least_samples()) {
     const Channels& c = settings_.channels;
-    most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples() : least_;
+    most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples()
+                                                              : settings_.samples;
     wants_centre_ = most_ == 1 || scene.needs().centre_rays;
     wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance);
 }
 
-int TileRays::samples_wanted(const Filtered& sum) const {
-    if (sum.count < least_) return least_;
-    return sum.color.noise() > settings_.noise_target ? most_ : sum.count;
+Averages TileRays::adapted(const Cell& cell, int x, int y) {
+    std::array<Filtered, 2> sums;
+    sample_adaptively(least_, most_, settings_.noise_target,
+                      [&](std::size_t half, int count) -> const PixelEstimate& {
+                          add_samples(sums[half], halves_[half], count, cell, x, y);
+                          return sums[half].color;
+                      });
+    return middle_of(averages_of(sums[0]), averages_of(sums[1]));
 }
 
-View TileRays::centre(const Cell& cell, int x, int y) const {
+/// Samples of a half up to so many.
+void TileRays::add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x,
+                           int y) {
+    const std::uint64_t hash = pixel_hash(x, y, half.pattern);
+    while (sum.count < count) {
+        const int begin = sum.count, end = std::min(begin + kBatch, count);
+        views_.clear();
+        for (int i = begin; i < end; ++i) add_sample(cell, x, y, hash, i);
+        trace();
+        add_radiance(sum, half, x, y);
+    }
+}
+
+void TileRays::add_centre(const Cell& cell, int x, int y) {
     const Instant& opening = scene_.opening();
-    return view_of(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+    add_view(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
 }
 
-View TileRays::sample(const Cell& cell, int x, int y, int index) const {
+void TileRays::add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index) {
     const auto number = static_cast<std::uint32_t>(index);
-    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(x, y, number));
+    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(hash, number));
     if (scene_.is_pinhole())
-        return view_of(scene_.opening(), scene_.opening().rays.middle(cell, film));
-    const auto u = Sampler(x, y, number).group(kCameraGroup);
+        return add_view(scene_.opening(), scene_.opening().rays.middle(cell, film));
+    const auto u = Sampler(hash, number).group(kCameraGroup);
     const Instant& instant = scene_.at(u[3]);
-    return view_of(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
-}
-
-View TileRays::view_of(const Instant& instant, const ViewRay& ray) const {
-    return {&instant, ray, instant.camera.to_world(ray, settings_.max_distance), {}};
+    add_view(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
 }
 
 void TileRays::trace() {
@@ -202,7 +258,9 @@ void TileRays::trace() {
             views_[i].surface = views_[i].instant->shading.surface(hits_[i], views_[i].ray);
 }
 
-void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
+/// Of the views of the half's next samples.
+void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
+    const int begin = sum.count;
     for (const View& view : views_) {
         ++sum.count;
         if (!view.surface) continue;
@@ -210,24 +268,22 @@ void TileRays::add_radiance(Filtered& sum, const SampleNumber& first) {
         sum.albedo += view.surface->albedo;
     }
     if (!scene_.wants_color()) return;
-    find_radiance(first);
-    SampleNumber sample = first;
-    for (const Color& color : colors_) {
-        if (color.isFinite().all()) {
-            sum.color.add(color);
+    find_radiance(Sampler(x, y, static_cast<std::uint32_t>(begin), half.pattern));
+    for (std::size_t i = 0; i < colors_.size(); ++i) {
+        if (colors_[i].isFinite().all()) {
+            sum.color.add(colors_[i]);
         } else {
             sum.color.add(Color::Zero());
-            stats.count_invalid(sample, 1);
+            stats.count_invalid({y, x, half.number(begin + static_cast<int>(i))}, 1);
         }
-        ++sample.sample;
     }
 }
 
-void TileRays::find_radiance(const SampleNumber& first) {
+void TileRays::find_radiance(const Sampler& first) {
     samples_.clear();
     for (std::uint32_t i = 0; i < views_.size(); ++i)
         samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
-                            Sampler(first.x, first.y, first.sample + i)});
+                            first.of(first.index() + i)});
     colors_.resize(views_.size());
     // Those of one instant together.
     for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {

@@ -41,8 +41,8 @@ struct TileImage {
 
 /// Renders a tile's pixels. Depth, normal, position and id are those of the ray through the pixel's
 /// centre when the shutter opens; colour, coverage and albedo are averages over the pixel's
-/// samples, or the centre ray's where there is one sample. With a noise target samples are added,
-/// in batches of 16, until PixelEstimate::noise() has reached it.
+/// samples, or the centre ray's where there is one sample. With a noise target noisy pixels get
+/// more samples, see sample_adaptively().
 /// @throws Stopped once `stop` is set
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop);
 

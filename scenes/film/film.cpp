@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
+#include "render/picture_needs.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
@@ -95,27 +97,43 @@ struct Moment {
 /// What a frame shows: the shutter opens and, if it is open for any time, closes.
 struct Exposure {
     Moment opening;
-    std::optional<Moment> closing;
+    std::vector<render::ShutterMoment> path;
 
     Exposure(const Scene& scene, Poses& poses, int frame)
         : opening(moment(scene, poses, frame_instant(scene, frame))) {
         if (scene.camera.shutter == 0) return;
-        closing = moment(scene, poses, closing_instant(scene, frame));
-        if (closing->looks_like(opening, scene)) closing.reset();
+        const double begin = frame_instant(scene, frame).time;
+        const double rate = scene.physics ? scene.physics->steps_per_second : 1;
+        bool is_still = true;
+        const auto add = [&](const FrameInstant& instant) {
+            Moment at = moment(scene, poses, instant);
+            is_still = is_still && at.looks_like(opening, scene);
+            path.push_back({instant.time - begin, std::move(at.bodies), at.camera});
+        };
+        for (const std::uint64_t step : shutter_steps(scene, frame))
+            if (poses.has(step)) add({static_cast<double>(step) / rate, step, 0});
+        // Past the last step all stands still.
+        const FrameInstant close = closing_instant(scene, frame);
+        const double last = static_cast<double>(step_count(scene)) / rate;
+        if (close.step == step_count(scene) && begin < last && last < close.time)
+            add({last, close.step, 0});
+        add(close);
+        if (is_still) path.clear();
     }
 
+    /// But for what is random in the picture.
     bool looks_like(const Exposure& other, const Scene& scene) const {
-        return opening.looks_like(other.opening, scene) && !closing && !other.closing;
+        return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty();
     }
-    render::Picture picture(const Scene& scene) const {
+    render::Picture picture(const Scene& scene, int frame) const {
         return {opening.bodies,
                 scene.appearance,
                 scene.materials,
                 opening.camera,
                 scene.lights,
                 scene.render,
-                closing ? &closing->bodies : nullptr,
-                closing ? &closing->camera : nullptr};
+                path,
+                frame};
     }
 
   private:
@@ -124,7 +142,8 @@ struct Exposure {
     }
 };
 
-/// A finished frame. The next one may look the same: a still camera over a scene at rest.
+/// A finished frame. The next one may look the same: a still camera over a scene at rest, and
+/// nothing random in the picture or the noise locked.
 struct Shown {
     Exposure exposure;
     render::FrameFiles files;
@@ -195,8 +214,9 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             continue;
         }
         Exposure exposure(scene, poses, info.frame);
-        const render::Picture picture = exposure.picture(scene);
-        if (shown && exposure.looks_like(shown->exposure, scene)) {
+        const render::Picture picture = exposure.picture(scene, info.frame);
+        if (shown && !render::needs_of(picture).moving_noise &&
+            exposure.looks_like(shown->exposure, scene)) {
             render::copy_frame(shown->files, picture, info, files);
             ++report.copied;
         } else {

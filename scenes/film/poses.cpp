@@ -26,7 +26,7 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
     if (header.bodies != scene.bodies.size())
         throw InputError(fmt::format("{}: holds {} bodies, the scene has {}", trajectory.string(),
                                      header.bodies, scene.bodies.size()));
-    for (std::uint64_t step : steps_for_frames(scene, frames))
+    for (std::uint64_t step : steps_needed(scene, frames))
         if (row_of(step) == trajectory_->rows())
             throw InputError(fmt::format(
                 "{}: step {} is not stored, but the frames asked for need it; simulate without "
@@ -39,6 +39,10 @@ std::uint64_t Poses::row_of(std::uint64_t step) const {
     const auto& steps = trajectory_->steps();
     const auto at = std::lower_bound(steps.begin(), steps.end(), step);
     return at != steps.end() && *at == step ? at - steps.begin() : trajectory_->rows();
+}
+
+bool Poses::has(std::uint64_t step) const {
+    return trajectory_ && row_of(step) < trajectory_->rows();
 }
 
 int Poses::motion_version() const {

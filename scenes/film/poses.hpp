@@ -24,6 +24,9 @@ class Poses {
     /// Valid until the next call.
     const Bodies& at(const FrameInstant& instant);
 
+    /// A trajectory holds the step; of a shutter's it may not.
+    bool has(std::uint64_t step) const;
+
     /// By which the trajectory was made; that of the program for a still.
     int motion_version() const;
 

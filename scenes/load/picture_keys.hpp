@@ -196,6 +196,8 @@ void pixel_keys(auto& self, const auto& visit) {
     visit("filter_width", self.filter_width, Interval{0, 100, true});
     visit("noise_target", self.noise_target, Rule::kNonNegative);
     visit("max_samples", self.max_samples, kSampleCounts);
+    visit("seed", self.seed, IntegerOrUnwritten{});
+    visit("lock_noise", self.lock_noise, FalseOrUnwritten{});
 }
 /// [render]: the rays
 void ray_keys(auto& self, const auto& visit) {

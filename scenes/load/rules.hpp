@@ -67,6 +67,24 @@ struct NonNegativeOrUnwritten {
     }
 };
 
+/// The same for integers and switches.
+struct IntegerOrUnwritten {
+    IntegerRange range;
+    std::int64_t unwritten = 0;
+    void read(TableReader& reader, const char* key, std::integral auto& value) const {
+        reader.read(key, value, range);
+    }
+    void write(EffectiveWriter& out, const char* key, std::integral auto value) const {
+        if (static_cast<std::int64_t>(value) != unwritten) out.key(key, value);
+    }
+};
+struct FalseOrUnwritten {
+    void read(TableReader& reader, const char* key, bool& value) const { reader.read(key, value); }
+    void write(EffectiveWriter& out, const char* key, bool value) const {
+        if (value) out.key(key, value);
+    }
+};
+
 /// A value of an enumeration; the names are in its order.
 struct Names {
     std::span<const std::string_view> names;

@@ -114,8 +114,9 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
     if (scene.camera.shutter > 0)
-        bytes += kPictureBytes * plan.bodies *
-                 render::most_instants(plan.bodies, scene.render.most_samples());
+        bytes += plan.bodies *
+                 (kPictureBytes * render::most_instants(plan.bodies, scene.render.most_samples()) +
+                  kStateBytes * (1 + shutter_steps(scene, 0).size()));
     return bytes;
 }
 
@@ -135,10 +136,10 @@ Plan make_plan(const Scene& scene, int threads) {
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
     plan.view_rays = pixels * render::most_view_rays(r) * plan.frames;
     plan.memory_bytes = memory_of(scene, plan, threads);
-    // A frame lies between two stored steps.
+    // A frame lies between two stored steps, its shutter over some more.
     if (plan.moves)
         plan.trajectory_bytes =
-            plan.bodies * (2 * plan.frames * kStateBytes +
+            plan.bodies * ((2 + shutter_steps(scene, 0).size()) * plan.frames * kStateBytes +
                            description_bytes({scene.bodies.types, scene.bodies.type, scene.names}));
 
     decide_physics(scene, plan);

@@ -61,7 +61,7 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
 void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& plan) {
     const render::CameraDescription& c = scene.camera;
     const bool is_moving = !scene.camera_keys.empty();
-    const int samples = scene.render.samples, most = scene.render.most_samples();
+    const int samples = scene.render.least_samples(), most = scene.render.most_samples();
     plan.decide("lens", needs.lens, fmt::format("aperture = {}", c.aperture),
                 "aperture = 0: a pinhole");
     plan.decide("motion blur", c.shutter > 0 && (plan.moves || is_moving),
@@ -76,6 +76,9 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
                     fmt::format("averaged over {} m", c.slice_thickness), "slice_thickness = 0");
     plan.decide("moving camera", is_moving, fmt::format("{} keys", scene.camera_keys.size()),
                 "no [[camera.key]]");
+    plan.decide("moving noise", needs.moving_noise, "every frame has random numbers of its own",
+                scene.render.lock_noise ? "lock_noise = true: every frame has those of frame 0"
+                                        : "nothing in the picture is random");
     plan.decide("noise target", needs.more_samples,
                 fmt::format("{} to {} samples a pixel", samples, most),
                 fmt::format("every pixel has {} samples", samples));

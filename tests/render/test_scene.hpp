@@ -24,13 +24,17 @@ struct TestScene {
     CameraDescription camera;
     Lights lights;
     Settings settings;
-    std::optional<Bodies> closing;  ///< poses when the shutter closes
+    std::optional<Bodies> closing;                 ///< poses when the shutter closes, after 1 s
+    mutable std::vector<ShutterMoment> path = {};  ///< or what the shutter sees
+    int frame = 0;
 
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
                std::uint32_t material = 0);
     Picture picture() const {
         Picture picture = {bodies, appearance, materials, camera, lights, settings};
-        if (closing) picture.closing = &*closing, picture.closing_camera = &camera;
+        picture.frame = frame;
+        if (closing) path = {{1, *closing, camera}};
+        picture.path = path;
         return picture;
     }
 };

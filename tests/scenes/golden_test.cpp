@@ -118,7 +118,7 @@ TEST_F(Golden, AFilmIsAsEver) {
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
               "13b3ad88c2a1162c5f0e6cacbd80d410");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "dca2d73b2285c5b7488fb05a74c27ea6");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "56cb01e0ba679e6f89c888644f6a5793");
 }
 
 }  // namespace

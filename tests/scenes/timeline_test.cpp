@@ -53,6 +53,27 @@ TEST(Timeline, FrameBetweenStepsNeedsBoth) {
     EXPECT_EQ(steps_for_frames(scene, {0, 1, 3}), (std::vector<std::uint64_t>{0, 3, 4, 10}));
 }
 
+TEST(Timeline, AnOpenShutterAsksForTheStepsInside) {
+    Scene scene = scene_of(1, 240, 30);  // 8 steps a frame
+    EXPECT_TRUE(shutter_steps(scene, 1).empty());
+    scene.camera.shutter = 0.5;
+    EXPECT_EQ(shutter_steps(scene, 1), (std::vector<std::uint64_t>{9, 10, 11}));
+    EXPECT_EQ(steps_needed(scene, {1}), (std::vector<std::uint64_t>{8, 12}));
+    EXPECT_EQ(steps_for_frames(scene, {1}), (std::vector<std::uint64_t>{8, 9, 10, 11, 12}));
+    scene.camera.shutter = 0.3;  // 8 to 10.4
+    EXPECT_EQ(shutter_steps(scene, 1), (std::vector<std::uint64_t>{9, 10}));
+    EXPECT_EQ(steps_needed(scene, {1}), (std::vector<std::uint64_t>{8, 10, 11}));
+    scene.camera.shutter = 0.1;  // within a step
+    EXPECT_TRUE(shutter_steps(scene, 1).empty());
+    // No more than 16 a frame, evenly spread.
+    scene = scene_of(1, 24000, 24);
+    scene.camera.shutter = 1;
+    const std::vector<std::uint64_t> many = shutter_steps(scene, 2);
+    EXPECT_EQ(many.size(), 15u);
+    EXPECT_EQ(many.front(), 2063u);
+    EXPECT_EQ(many.back(), 2000u + 15 * 63);
+}
+
 TEST(Timeline, ParsesRangesInOrderWithoutRepeats) {
     EXPECT_EQ(parse_frames("", 3), (std::vector<int>{0, 1, 2}));
     EXPECT_EQ(parse_frames("5,0-4x2,2-3", 10), (std::vector<int>{0, 2, 3, 4, 5}));

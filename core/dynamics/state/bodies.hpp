@@ -49,4 +49,11 @@ struct Bodies {
 /// @param between   gets them, the rest of it stays; may be `before`
 void interpolate_poses(const Bodies& before, const Bodies& after, double part, Bodies& between);
 
+/// The same, but that rotors turn at the bodies' angular velocities (the mean of both ends' along
+/// the way), however many times round; what that leaves to `after` they turn the shortest way
+/// meanwhile. A body that is the same in both stays.
+/// @param time   from `before` to `after` [s]
+void follow_poses(const Bodies& before, const Bodies& after, double time, double part,
+                  Bodies& between);
+
 }  // namespace tesserae

@@ -98,20 +98,26 @@ TEST(PixelEstimate, IsMeanAndVarianceOfTheMean) {
     EXPECT_LT((estimate.variance() / variance - 1).abs().maxCoeff(), 1e-6);
 }
 
-TEST(PixelEstimate, NoiseIsTheErrorInPartsOfAnEncodedPicture) {
+TEST(PixelEstimate, SaysHowManySamplesBringTheNoiseDown) {
     PixelEstimate estimate;
-    EXPECT_EQ(estimate.noise(), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(estimate.samples_for(0.1), std::numeric_limits<double>::infinity());
     for (int i = 0; i < 100; ++i) estimate.add(Color::Constant(i % 2 == 0 ? 0.3 : 0.2));
-    // Standard deviation 0.05 of one sample, so 0.005 (times sqrt(100/99)) of the mean 0.25.
-    const double error = 0.005 * std::sqrt(100.0 / 99);
-    EXPECT_NEAR(estimate.noise(), std::sqrt(0.25 + error / 2) - std::sqrt(0.25 - error / 2),
-                1e-4 * error);
+    // Standard deviation 0.05 of one sample (times sqrt(100/99)); what is the error of a mean 0.25
+    // that shows as 0.001 in a picture encoded by its square root?
+    const double error = std::pow(0.5 + 0.001 / 2, 2) - std::pow(0.5 - 0.001 / 2, 2);
+    EXPECT_NEAR(estimate.samples_for(0.001), 0.05 * 0.05 * 100 / 99 / (error * error), 1e-9);
+    // Darker than its error: encoded as if it were that bright.
+    PixelEstimate dark;
+    for (const double bright : {0.0, 0.0, 0.0, 4e-6}) dark.add(Color::Constant(bright));
+    const double count = dark.samples_for(0.01), left = 2e-6 / std::sqrt(count);
+    EXPECT_NEAR(left / (2 * std::sqrt(left)), 0.01, 1e-9);
 }
 
-TEST(PixelEstimate, BlackWithoutVariationHasNoNoise) {
+TEST(PixelEstimate, WithoutVariationNeedsNoMoreSamples) {
     PixelEstimate estimate;
     for (int i = 0; i < 2; ++i) estimate.add(Color::Zero());
-    EXPECT_EQ(estimate.noise(), 0);
+    EXPECT_EQ(estimate.samples_for(0.01), 0);
+    EXPECT_EQ(estimate.samples_for(1e-300), 0);
 }
 
 }  // namespace

@@ -11,7 +11,30 @@
 namespace tesserae::render {
 namespace {
 
+/// Of several frames and seeds, each with its second one.
+std::vector<std::uint64_t> some_patterns() {
+    std::vector<std::uint64_t> patterns;
+    for (const std::uint64_t seed : {0ull, 1ull, 0x7fffffffffffffffull})
+        for (const int frame : {0, 1, 2, 9'999'999}) {
+            patterns.push_back(sample_pattern(seed, frame));
+            patterns.push_back(second_pattern(patterns.back()));
+        }
+    return patterns;
+}
+
+TEST(SamplePattern, IsTodaysForFrameZeroAndNoOtherFramesOrSeeds) {
+    EXPECT_EQ(sample_pattern(0, 0), 0u);
+    std::set<std::uint64_t> patterns;
+    for (std::uint64_t seed = 0; seed < 100; ++seed)
+        for (int frame = 0; frame < 500; ++frame) {
+            patterns.insert(sample_pattern(seed, frame));
+            patterns.insert(second_pattern(sample_pattern(seed, frame)));
+        }
+    EXPECT_EQ(patterns.size(), 2u * 100 * 500);
+}
+
 TEST(PixelSample, EveryElementaryCellHoldsOnePoint) {
+    const auto patterns = some_patterns();
     // The property that makes a (0, m, 2)-net, which Owen scrambling keeps.
     for (int pixel = 0; pixel < 50; ++pixel)
         for (int m = 0; m <= 8; ++m)
@@ -19,7 +42,9 @@ TEST(PixelSample, EveryElementaryCellHoldsOnePoint) {
                 const int columns = 1 << k, rows = 1 << (m - k);
                 std::vector<int> count(static_cast<std::size_t>(columns * rows));
                 for (std::uint32_t i = 0; i < (1u << m); ++i) {
-                    const Vec2 p = pixel_sample(37 * pixel, 11 * pixel, i);
+                    const Vec2 p =
+                        pixel_sample(37 * pixel, 11 * pixel, i,
+                                     patterns[static_cast<std::size_t>(pixel) % patterns.size()]);
                     ASSERT_TRUE(p.x() >= 0 && p.x() < 1 && p.y() >= 0 && p.y() < 1);
                     const int cell = static_cast<int>(p.x() * columns) +
                                      columns * static_cast<int>(p.y() * rows);
@@ -56,8 +81,10 @@ TEST(PixelSample, PixelsHaveDifferentPatterns) {
 /// How many of the first 2^m points lie in each cell of a grid of 2^k[d] along dimension d.
 std::vector<int> counts(int x, int y, std::uint32_t group, int m, const std::array<int, 4>& k) {
     std::vector<int> count(std::size_t{1} << (k[0] + k[1] + k[2] + k[3]));
+    const auto patterns = some_patterns();
+    const Sampler sampler(x, y, 0, patterns[static_cast<std::size_t>(x) % patterns.size()]);
     for (std::uint32_t i = 0; i < (1u << m); ++i) {
-        const auto p = Sampler(x, y, i).group(group);
+        const auto p = sampler.of(i).group(group);
         std::size_t cell = 0;
         for (std::size_t d = 0; d < 4; ++d) {
             EXPECT_TRUE(p[d] >= 0 && p[d] < 1);
@@ -107,19 +134,48 @@ TEST(Sampler, LaterBlocksOfSamplesAreNetsToo) {
     }
 }
 
-TEST(Sampler, GroupsPixelsAndSamplesAreIndependent) {
-    // Chi-squared over 16 x 16 cells of pairs of numbers that no net ties together: 255 degrees of
-    // freedom, deviation 22.6.
-    const auto chi_of = [](auto&& pair) {
-        std::vector<double> count(256);
-        for (int i = 0; i < 16384; ++i) {
-            const auto [a, b] = pair(i);
-            ++count[static_cast<std::size_t>(16 * a) + 16 * static_cast<std::size_t>(16 * b)];
+/// Chi-squared over 16 x 16 cells of 16384 pairs of numbers: of independent ones with 255 degrees
+/// of freedom, deviation 22.6.
+template <class F>
+double chi_of(const F& pair) {
+    std::vector<double> count(256);
+    for (int i = 0; i < 16384; ++i) {
+        const auto [a, b] = pair(i);
+        ++count[static_cast<std::size_t>(16 * a) + 16 * static_cast<std::size_t>(16 * b)];
+    }
+    double chi = 0;
+    for (double c : count) chi += (c - 64) * (c - 64) / 64;
+    return chi;
+}
+
+TEST(SamplePattern, PatternsAreIndependent) {
+    // The same sample of the same pixel, and of its neighbour, in two patterns.
+    const auto expect_independent = [](std::uint64_t a, std::uint64_t b) {
+        for (const int moved : {0, 1}) {
+            const auto pair = [&](auto&& number) {
+                return [&, number](int i) {
+                    return std::pair<double, double>(number(i % 128, i / 128, a),
+                                                     number(i % 128 + moved, i / 128, b));
+                };
+            };
+            EXPECT_NEAR(chi_of(pair([](int x, int y, std::uint64_t p) {
+                            return pixel_sample(x, y, 3, p).x();
+                        })),
+                        255, 5 * 22.6)
+                << a << " " << b;
+            EXPECT_NEAR(chi_of(pair([](int x, int y, std::uint64_t p) {
+                            return Sampler(x, y, 3, p).group(0)[1];
+                        })),
+                        255, 5 * 22.6)
+                << a << " " << b;
         }
-        double chi = 0;
-        for (double c : count) chi += (c - 64) * (c - 64) / 64;
-        return chi;
     };
+    const auto patterns = some_patterns();
+    for (std::size_t i = 0; i < patterns.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) expect_independent(patterns[i], patterns[j]);
+}
+
+TEST(Sampler, GroupsPixelsAndSamplesAreIndependent) {
     using Pair = std::pair<double, double>;
     const auto at = [](int x, int y, std::uint32_t i, std::uint32_t g, std::size_t d) {
         return Sampler(x, y, i).group(g)[d];

@@ -58,6 +58,8 @@ std::string other(const Vec4&, Turn) { return kOtherVector; }
 std::string other(const Vec4&, Spacing) { return kOtherVector; }
 std::string other(const render::Color&, Interval) { return "[0.25, 0.5, 1]"; }
 std::string other(const Bivector&) { return "{ xy = 30, zw = 0.5 }"; }
+std::string other(bool value, FalseOrUnwritten) { return toml_text(!value); }
+std::string other(std::integral auto value, IntegerOrUnwritten) { return toml_text(value + 1); }
 std::string other(bool value) { return toml_text(!value); }
 std::string other(const std::string&) { return "\"other\""; }
 std::string other(const std::string&, NotEmpty) { return "\"other\""; }

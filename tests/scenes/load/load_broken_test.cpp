@@ -243,6 +243,8 @@ const std::vector<Broken>& broken_scenes() {
         {"[render]\nnoise_target = -1\n", "2:16", {"noise_target = -1"}},
         {"[render]\ncompression = \"dwaa\"\n", "2:15", {"\"zip\"", "\"piz\""}},
         {"[render]\nmax_samples = 0\n", "2:15", {"1 to 1048576"}},
+        {"[render]\nseed = -1\n", "2:8", {"seed = -1", "an integer >= 0"}},
+        {"[render]\nlock_noise = 1\n", "2:14", {"lock_noise = 1"}},
     };
     return kScenes;
 }

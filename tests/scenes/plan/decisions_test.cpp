@@ -40,6 +40,14 @@ struct Frame {
     }
 };
 
+/// The bytes of the preview of frame 0.
+std::string preview_of(const Scene& scene) {
+    const SceneFile file("");
+    const FilmReport report = film(scene, {0}, {}, file.folder() / "out", false, true);
+    std::ifstream in(report.preview, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 const std::string kMaterials = R"(
 [[material]]
 name = "mirror"
@@ -96,6 +104,41 @@ TEST(PlanOfAPicture, CountsTheViewRays) {
     EXPECT_GT(noisy.stats.view_rays, 16u * 12 * 3);
     EXPECT_LE(noisy.stats.view_rays, make_plan(noisy.scene, 1).view_rays);
     EXPECT_FALSE(needs(Frame(ball(0), {"render.max_samples=64"}).scene, "noise target"));
+}
+
+TEST(PlanOfAPicture, SaysWhetherNoiseMoves) {
+    const std::string light =
+        "[[light]]\ntype = \"sphere\"\nposition = [0, 6, -6, 0]\nradius = 1\n";
+    const std::string bodies[] = {"",    ball(0, "visible = false"),     ball(0), light + ball(0),
+                                  light, ball(0, "material = \"glass\"")};
+    for (const std::string& body : bodies)
+        for (const char* integrator : {"\"direct\"", "\"path\""})
+            for (const char* samples : {"1", "2"}) {
+                SCOPED_TRACE(body + integrator + samples);
+                const auto scene = [&](const std::string& more) {
+                    return load_text(
+                        kMaterials + body,
+                        {"render.size=[16, 12]", more, std::string("render.samples=") + samples,
+                         std::string("render.integrator=") + integrator});
+                };
+                // What is said to be the same is the same in other frames and with other seeds.
+                if (!needs(scene("render.seed=0"), "moving noise")) {
+                    EXPECT_EQ(preview_of(scene("render.seed=0")),
+                              preview_of(scene("render.seed=1")));
+                }
+                EXPECT_FALSE(needs(scene("render.lock_noise=true"), "moving noise"));
+            }
+    // And what can differ does.
+    for (const std::vector<std::string>& sets :
+         {std::vector<std::string>{"render.samples=2"},
+          {"render.samples=1", "render.integrator=\"path\""}}) {
+        std::vector<std::string> other = sets;
+        other.push_back("render.seed=1");
+        const std::string text = "[render]\nsize = [16, 12]\n" + light + ball(0) + ball(2);
+        EXPECT_TRUE(needs(load_text(text, sets), "moving noise"));
+        EXPECT_NE(preview_of(load_text(text, sets)), preview_of(load_text(text, other)));
+    }
+    EXPECT_FALSE(needs(load_text(light + ball(0), {"render.samples=1"}), "moving noise"));
 }
 
 TEST(PlanOfAPicture, SaysWhereViewRaysStart) {

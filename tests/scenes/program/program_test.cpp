@@ -85,19 +85,45 @@ fourth = [0.5, 0, 0, 1]
         EXPECT_EQ(run.status, 0) << run.err;
         return nlohmann::json::parse(run.out)["render"];
     };
-    const auto whole = render("whole", {});
-    EXPECT_EQ(whole["rendered"], 3);
-    EXPECT_EQ(whole["copied"], 4);
-    for (const char* frame : {"1", "4", "6"}) {
-        EXPECT_EQ(render(frame, {"--frames", frame})["rendered"], 1);
-        for (const std::string name : {"frames/rest.000N.exr", "preview/rest.000N.png"}) {
-            std::string file = name;
-            file.replace(file.find('N'), 1, frame);
-            EXPECT_EQ(content(folder / "whole" / file), content(folder / frame / file)) << file;
+    const auto preview = [&](const std::string& out, int frame) {
+        return content(folder / out / fmt::format("preview/rest.{:04}.png", frame));
+    };
+    const auto expect_alone_as_in = [&](const std::string& out, std::vector<std::string> more) {
+        more.insert(more.end(), {"--frames", ""});
+        for (const char* frame : {"1", "4", "6"}) {
+            more.back() = frame;
+            const std::string alone = out + frame;
+            EXPECT_EQ(render(alone.c_str(), more)["rendered"], 1);
+            for (const std::string name : {"frames/rest.000N.exr", "preview/rest.000N.png"}) {
+                std::string file = name;
+                file.replace(file.find('N'), 1, frame);
+                EXPECT_EQ(content(folder / out / file), content(folder / alone / file)) << file;
+            }
         }
+    };
+    // A copy is a frame in which nothing is random or the noise is locked.
+    const std::vector<std::string> same[] = {{"--set", "render.lock_noise=true"},
+                                             {"--samples", "1"}};
+    for (const bool is_locked : {true, false}) {
+        const std::vector<std::string>& more = same[is_locked ? 0 : 1];
+        const std::string out = is_locked ? "locked" : "one";
+        const auto whole = render(out.c_str(), more);
+        EXPECT_EQ(whole["rendered"], 3);
+        EXPECT_EQ(whole["copied"], 4);
+        expect_alone_as_in(out, more);
+        EXPECT_EQ(preview(out, 4), preview(out, 6));
+        EXPECT_NE(preview(out, 1), preview(out, 4));
     }
-    EXPECT_NE(content(folder / "whole/preview/rest.0001.png"),
-              content(folder / "whole/preview/rest.0004.png"));
+    // Else frames have noise of their own, the same however they are rendered.
+    const auto moving = render("moving", {});
+    EXPECT_EQ(moving["rendered"], 7);
+    EXPECT_EQ(moving["copied"], 0);
+    expect_alone_as_in("moving", {});
+    EXPECT_NE(preview("moving", 4), preview("moving", 6));
+    EXPECT_EQ(preview("moving", 0), preview("locked", 0));
+    render("seed", {"--set", "render.seed=1", "--frames", "0,4"});
+    EXPECT_NE(preview("seed", 0), preview("moving", 0));
+    EXPECT_NE(preview("seed", 4), preview("moving", 4));
 }
 
 TEST(Program, AnotherSceneInTheSameFolderIsRefused) {

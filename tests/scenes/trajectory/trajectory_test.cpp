@@ -170,8 +170,8 @@ TEST_F(TrajectoryTest, AnInterruptedRunEndsWithTheSameBytes) {
 TEST_F(TrajectoryTest, AKilledRunEndsWithTheSameBytes) {
     // Killed at random times, while creating, appending, flushing and finishing. The child flushes
     // often because it reopens the file every few rows.
-    constexpr std::uint64_t kRows = 60;
-    write_whole(kRows, 9);
+    constexpr std::uint64_t kManyRows = 60;
+    write_whole(kManyRows, 9);
     const auto straight = datasets_of(path_);
     std::mt19937_64 random(7);
     int killed = 0, anew = 0;
@@ -179,12 +179,12 @@ TEST_F(TrajectoryTest, AKilledRunEndsWithTheSameBytes) {
         fs::remove(path_);
         const pid_t child = ::fork();
         if (child == 0) {
-            for (std::uint64_t end = 1; end <= kRows; end += 3) {
-                TrajectoryWriter writer(path_, make_header(9), make_steps(kRows), false);
+            for (std::uint64_t end = 1; end <= kManyRows; end += 3) {
+                TrajectoryWriter writer(path_, make_header(9), make_steps(kManyRows), false);
                 append_rows(writer, std::max(end, writer.rows()), 9);
             }
-            TrajectoryWriter writer(path_, make_header(9), make_steps(kRows), false);
-            append_rows(writer, kRows, 9);
+            TrajectoryWriter writer(path_, make_header(9), make_steps(kManyRows), false);
+            append_rows(writer, kManyRows, 9);
             writer.finish();
             ::_exit(0);
         }
@@ -195,9 +195,9 @@ TEST_F(TrajectoryTest, AKilledRunEndsWithTheSameBytes) {
         if (!WIFSIGNALED(status)) continue;
         ++killed;
         if (fs::exists(path_)) continue;
-        TrajectoryWriter writer(path_, make_header(9), make_steps(kRows), false);
+        TrajectoryWriter writer(path_, make_header(9), make_steps(kManyRows), false);
         anew += !writer.note().empty();
-        append_rows(writer, kRows, 9);
+        append_rows(writer, kManyRows, 9);
         writer.finish();
         ASSERT_EQ(datasets_of(path_), straight) << "round " << round;
     }
