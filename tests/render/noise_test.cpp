@@ -97,7 +97,8 @@ TEST(Noise, OfAFrameDoesNotDependOnTilesAndCrop) {
 }
 
 /// A glowing ball above a floor, path traced with one bounce: the camera sees a spot of the floor
-/// right below it, where the closed form holds: albedo L sin^3, with the sine of the ball's rim.
+/// right below it, where the closed form holds: albedo L sin^3, with the sine of the ball's rim. It
+/// stands in glass that bends nothing, so that paths find it by chance only.
 struct GlowingBall {
     static constexpr double kAlbedo = 0.8, kGlow = 8, kRadius = 1;
     TestScene scene;
@@ -105,12 +106,16 @@ struct GlowingBall {
 
     explicit GlowingBall(double distance)
         : exact(kAlbedo * kGlow * std::pow(kRadius / distance, 3)) {
-        scene.materials.resize(2);
+        scene.materials.resize(3);
         scene.materials[0].albedo = Color::Constant(kAlbedo);
+        scene.materials[2].kind = MaterialKind::kGlass;
+        scene.materials[2].ior = 1;
+        scene.materials[2].albedo = Color::Ones();
         scene.materials[1].albedo = Color::Zero();
         scene.materials[1].emission = Color::Constant(kGlow);
         scene.add(Hyperplane{Vec4::UnitY(), 0}, Vec4::Zero());
         scene.add(Hypersphere{kRadius}, {0, distance, 0, 0}, {}, 1);
+        scene.add(Hypersphere{1.1 * kRadius}, {0, distance, 0, 0}, {}, 2);
         scene.camera.position = {0, 0.5, -4, 0};
         scene.camera.field_of_view = 0.03;
         scene.settings.integrator = Integrator::kPath;
