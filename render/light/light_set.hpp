@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/description.hpp"
@@ -52,8 +53,21 @@ struct LightSet {
         std::uint32_t sphere = kNone;
         double distance = kMiss;
     };
-    /// The nearest sphere light that a ray meets before its limit.
+    /// The nearest sphere light that a ray meets before its limit; of equally near ones that of the
+    /// lowest index.
     Seen first_sphere(const Ray& ray) const;
+
+  private:
+    /// A ball about some of the spheres, followed by those within it: a tree, depth first.
+    struct Ball {
+        Vec4 centre;
+        double radius;
+        std::uint32_t sphere;  ///< the one that it is, or kNone
+        std::uint32_t past;    ///< the ball after those within this one
+    };
+    void add_balls(std::span<std::uint32_t> spheres);
+
+    std::vector<Ball> balls_;
 };
 
 }  // namespace tesserae::render
