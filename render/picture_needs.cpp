@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/light/light_set.hpp"
+#include "render/light/lamps.hpp"
 #include "render/material/bsdf.hpp"
 
 namespace tesserae::render {
@@ -25,9 +25,13 @@ PictureNeeds needs_of(const Picture& picture) {
         });
     };
     PictureNeeds needs = {};
-    needs.shadow_rays = !LightSet(picture.lights, camera.position).is_empty() && any_visible(false);
-    needs.bounce_rays =
-        any_visible(true) || (settings.integrator == Integrator::kPath && any_visible(false));
+    const LightSet lights(picture.lights, camera.position);
+    const bool is_path = settings.integrator == Integrator::kPath;
+    const std::size_t glowing = is_path ? count_glowing(picture) : 0;
+    needs.shadow_rays = (!lights.is_empty() || glowing > 0) && any_visible(false);
+    needs.lamp_choice =
+        is_path && any_visible(false) && lights.spheres.size() + glowing > Lamps::kEach;
+    needs.bounce_rays = any_visible(true) || (is_path && any_visible(false));
     needs.centre_rays = has_centre_rays(settings);
     needs.more_samples = settings.noise_target > 0;
     needs.lens = camera.aperture > 0;

@@ -8,6 +8,7 @@ namespace tesserae::render {
 /// What is false is left out of the whole frame. The renderer acts on it, `tesserae plan` tells it.
 struct PictureNeeds {
     bool shadow_rays;   ///< a light shines, and a visible body is neither mirror nor glass
+    bool lamp_choice;   ///< of many lamps one is asked for light: see Lamps
     bool bounce_rays;   ///< from surface to surface: light paths, or a visible mirror or glass
     bool centre_rays;   ///< beside several samples, for what is as at the pixel's centre
     bool more_samples;  ///< where a pixel is noisy

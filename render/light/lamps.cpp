@@ -7,12 +7,11 @@
 namespace tesserae::render {
 namespace {
 
-/// As many lamps are asked one by one. More, and each costs a ray at every surface; of fewer than
-/// that, a choice would have more noise than it saves.
-constexpr std::uint32_t kEach = 4;
-
-const Material& material_of(const Picture& picture, BodyId id) {
-    return picture.materials[picture.appearance[picture.bodies.type[id]].material];
+/// Black if it is no lamp.
+Color glow_of(const Picture& picture, BodyId id) {
+    const Appearance& seen = picture.appearance[picture.bodies.type[id]];
+    if (!seen.visible || !is_bounded(picture.bodies.type_of(id).shape)) return Color::Zero();
+    return picture.materials[seen.material].emission;
 }
 
 /// How much a lamp shines in all directions, about: its radiance times its mean section.
@@ -23,6 +22,12 @@ double power_of(const Color& radiance, const Shape& shape) {
 
 }  // namespace
 
+std::size_t count_glowing(const Picture& picture) {
+    std::size_t count = 0;
+    for (BodyId id = 0; id < picture.bodies.size(); ++id) count += (glow_of(picture, id) > 0).any();
+    return count;
+}
+
 Lamps::Lamps(const LightSet& lights, const Picture& picture, const PlacedBodies& placed) {
     for (std::uint32_t i = 0; i < lights.spheres.size(); ++i) {
         const SphereLight& s = lights.spheres[i];
@@ -31,8 +36,8 @@ Lamps::Lamps(const LightSet& lights, const Picture& picture, const PlacedBodies&
     }
     for (std::uint32_t i = 0; i < placed.bodies.size(); ++i) {
         const PlacedBody& body = placed.bodies[i];
-        const Color& emission = material_of(picture, body.id).emission;
-        if (!(emission > 0).any() || !is_bounded(*body.shape)) continue;
+        const Color emission = glow_of(picture, body.id);
+        if (!(emission > 0).any()) continue;
         if (of_body_.empty()) of_body_.assign(placed.bodies.size(), kNone);
         of_body_[i] = static_cast<std::uint32_t>(lamps_.size());
         lamps_.push_back(

@@ -21,6 +21,9 @@ struct Lamp {
     std::uint32_t body;    ///< in PlacedBodies::bodies, or kNoBody
 };
 
+/// The visible bounded bodies that glow.
+std::size_t count_glowing(const Picture& picture);
+
 /// A lamp, and how often a choice falls on it.
 struct LampChoice {
     std::uint32_t lamp;
@@ -34,6 +37,9 @@ struct LampChoice {
 class Lamps {
   public:
     static constexpr std::uint32_t kNone = LightSet::kNone;
+    /// As many are asked one by one. More, and each costs a ray at every surface; of fewer, a
+    /// choice would have more noise than it saves.
+    static constexpr std::uint32_t kEach = 4;
 
     Lamps(const LightSet& lights, const Picture& picture, const PlacedBodies& placed);
 

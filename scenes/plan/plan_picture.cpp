@@ -2,7 +2,7 @@
 
 #include "core/error.hpp"
 #include "render/camera/camera.hpp"
-#include "render/light/light_set.hpp"
+#include "render/light/lamps.hpp"
 #include "render/material/bsdf.hpp"
 #include "render/picture_needs.hpp"
 #include "render/scene/slice.hpp"
@@ -17,8 +17,8 @@ render::Picture picture_of(const Scene& scene, const render::CameraDescription& 
 }
 
 /// Those that shine, but for the sky.
-std::string light_counts(const render::Lights& lights) {
-    const render::LightSet shining(lights, Vec4::Zero());
+std::string light_counts(const Scene& scene) {
+    const render::LightSet shining(scene.lights, Vec4::Zero());
     std::string text;
     const auto add = [&](std::size_t count, const char* name) {
         if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
@@ -26,12 +26,14 @@ std::string light_counts(const render::Lights& lights) {
     add(shining.suns.size(), "sun(s)");
     add(shining.points.size(), "point light(s)");
     add(shining.spheres.size(), "sphere light(s)");
+    if (scene.render.integrator == render::Integrator::kPath)
+        add(render::count_glowing(picture_of(scene, scene.camera)), "glowing bodies");
     return text;
 }
 
 void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& plan) {
     const bool is_path = scene.render.integrator == render::Integrator::kPath;
-    const std::string counts = light_counts(scene.lights);
+    const std::string counts = light_counts(scene);
     const char* dark = is_path ? "no light but the sky, which bounced rays find"
                                : "no light but the sky, which is taken unoccluded";
     plan.decide("shadow rays", needs.shadow_rays, counts,
@@ -41,6 +43,10 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
                             scene.render.bounces),
                 "integrator = \"direct\"");
     if (is_path) {
+        plan.decide("choice of lamps", needs.lamp_choice,
+                    "of the sphere lights and glowing bodies a surface asks one for light",
+                    fmt::format("at most {} sphere lights and glowing bodies: each is asked",
+                                render::Lamps::kEach));
         const double most = scene.render.clamp_indirect;
         plan.decide("clamped indirect light", most > 0,
                     fmt::format("clamp_indirect = {}: brighter indirect light is lost", most),

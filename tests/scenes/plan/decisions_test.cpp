@@ -55,6 +55,9 @@ kind = "mirror"
 [[material]]
 name = "glass"
 kind = "glass"
+[[material]]
+name = "glow"
+emission = [1, 1, 1]
 )";
 
 std::string ball(double x, const std::string& lines = "") {
@@ -70,8 +73,15 @@ TEST(PlanOfAPicture, SaysWhichRaysAreTraced) {
         "[[light]]\ntype = \"sphere\"\nposition = [0, 6, -6, 0]\nradius = 1\n"};
     const std::string mirror = ball(2, "material = \"mirror\""),
                       glass = ball(-2, "material = \"glass\""), hidden = ball(0, "visible = false");
-    const std::string bodies[] = {"",     hidden, ball(0),        ball(0) + ball(3),
-                                  mirror, glass,  mirror + glass, ball(0) + mirror + hidden};
+    const std::string bodies[] = {"",
+                                  hidden,
+                                  ball(0),
+                                  ball(0) + ball(3),
+                                  mirror,
+                                  glass,
+                                  mirror + glass,
+                                  ball(0) + mirror + hidden,
+                                  ball(0) + ball(3, "material = \"glow\"")};
     for (const std::string& light : lights)
         for (const std::string& body : bodies)
             for (const bool is_path : {false, true}) {
@@ -89,6 +99,21 @@ TEST(PlanOfAPicture, SaysWhichRaysAreTraced) {
                     EXPECT_EQ(frame.stats.bounce_rays > 0, !body.empty() && body != hidden);
                 }
             }
+}
+
+TEST(PlanOfAPicture, SaysWhetherOneOfManyLampsIsAsked) {
+    const auto asks_one = [](int lights, int bodies, const char* integrator) {
+        std::string text = kMaterials + ball(0);
+        for (int i = 0; i < lights; ++i)
+            text += fmt::format(
+                "[[light]]\ntype = \"sphere\"\nposition = [{}, 6, -6, 0]\nradius = 0.1\n", i);
+        for (int i = 0; i < bodies; ++i) text += ball(3 * i + 3, "material = \"glow\"");
+        const Frame frame(text, {std::string("render.integrator=") + integrator});
+        return needs(frame.scene, "choice of lamps");
+    };
+    EXPECT_FALSE(asks_one(2, 2, "\"path\""));
+    EXPECT_TRUE(asks_one(3, 2, "\"path\""));
+    EXPECT_TRUE(asks_one(0, 5, "\"path\""));
 }
 
 TEST(PlanOfAPicture, CountsTheViewRays) {
