@@ -128,6 +128,9 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
     const double far = picture.settings.max_distance;
     if (is_pinhole()) {
         slice_ = slice_bounds(opening().placed, opening().camera, far);
+        // What a pixel's samples meet may lie beside the pixel.
+        const double reach = filter_.reach();
+        for (SliceBounds& s : slice_) s.x0 -= reach, s.y0 -= reach, s.x1 += reach, s.y1 += reach;
         return;
     }
     for (const auto& instant : instants_)
