@@ -104,7 +104,9 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       tree(tree_of(picture, placed)),
       shading(picture, placed, tree, lights, rough),
       integrator(make_integrator(picture, placed, tree, lights, shading)),
-      rays(description, camera) {}
+      rays(description, camera),
+      glass_about(integrator->glass().about(
+          Vec4::Zero(), std::hypot(rays.reach(), rays.range().low, rays.range().high))) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)
     : picture_(picture),

@@ -23,7 +23,8 @@ struct Instant {
     Shading shading;
     std::unique_ptr<const LightIntegrator> integrator;
     CameraRays rays;
-    std::optional<ViewScene> view;  ///< none where FrameScene::slice serves
+    std::vector<std::uint32_t> glass_about;  ///< GlassBodies::about where view rays begin
+    std::optional<ViewScene> view;           ///< none where FrameScene::slice serves
 
     /// @param bodies   their poses at the instant; only read here
     Instant(const Picture& picture, const CameraDescription& description, const SliceSheet& sheet,
