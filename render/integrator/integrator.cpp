@@ -86,8 +86,8 @@ std::uint32_t LightIntegrator::first_group(int scattered, std::size_t lamps) con
     return static_cast<std::uint32_t>(groups) * static_cast<std::uint32_t>(scattered);
 }
 
-void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) {
-    path.ray = {path.surface->point, direction, path.surface->body};
+void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) const {
+    path.ray = {path.surface->point, direction, path.surface->body, settings_.ray_limit()};
     path.density = density;
     path.normal = path.surface->normal;
     path.is_view = false;

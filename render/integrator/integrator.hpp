@@ -97,7 +97,7 @@ class LightIntegrator {
     /// for the choice of lights, one for each sun and for each lamp that is asked.
     std::uint32_t first_group(int scattered, std::size_t lamps) const;
     /// Sends a path on from its surface.
-    static void leave(LightPath& path, const Vec4& direction, double density);
+    void leave(LightPath& path, const Vec4& direction, double density) const;
     /// The same from a mirror or glass.
     /// @param choice   uniform in [0, 1): between reflection and refraction
     void scatter_specular(LightPath& path, double choice) const;

@@ -161,14 +161,15 @@ GlassBodies::Event GlassBodies::next(std::uint32_t medium, Ray ray, FrameStats& 
         },
         *glass.shape);
     Hit hit;
-    ray.limit = exit;
+    const double limit = ray.limit;
+    ray.limit = std::min(exit, limit);
     for (const std::uint32_t body : neighbours_[slot_[medium]]) {
         if (body == ray.on || (is_glass(body) && body < medium)) continue;
         if (hit.take(body, hit_distance(placed_, body, ray, picture_.settings, stats)))
             ray.limit = hit.distance;
     }
     // What is met where the ray leaves is outside.
-    if (exit <= hit.distance && exit < kMiss) return {{exit, medium}, true};
+    if (exit <= hit.distance && exit <= limit && exit < kMiss) return {{exit, medium}, true};
     return {ruling(hit, ray), false};
 }
 

@@ -38,8 +38,8 @@ class GlassBodies {
     };
     /// What a ray inside the glass body `medium` meets next: a body in the glass, a glass that
     /// rules there, or the medium's own surface from inside (in closed form, whatever the
-    /// intersector). No hit: it never leaves (an infinite half-space).
-    /// @param ray   its limit does not count; if it is `on` the medium, it leaves by the far side
+    /// intersector). No hit: it never leaves (an infinite half-space), or not before its limit.
+    /// @param ray   if it is `on` the medium, it leaves by the far side
     Event next(std::uint32_t medium, Ray ray, FrameStats& stats) const;
 
     /// Where a ray goes into several bodies of glass in one place, the hit on the one that rules

@@ -127,7 +127,7 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
             instants_.push_back(std::make_unique<Instant>(picture, camera, sheet_, bodies, rough_));
         }
     }
-    const double far = picture.settings.max_distance;
+    const double far = picture.settings.ray_limit();
     if (is_pinhole()) {
         slice_ = slice_bounds(opening().placed, opening().camera, far);
         // What a pixel's samples meet may lie beside the pixel.

@@ -84,7 +84,7 @@ class TileRays {
     void add_centre(const Cell& cell, int x, int y);
     void add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index);
     void add_view(const Instant& instant, const ViewRay& ray) {
-        views_.emplace_back(instant, ray, settings_.max_distance);
+        views_.emplace_back(instant, ray, limit_);
     }
     // Of views_:
     void trace();
@@ -95,6 +95,7 @@ class TileRays {
     const FrameScene& scene_;
     const Tile& tile_;
     const Settings& settings_;
+    double limit_;  ///< of rays [m]
     Half whole_;
     std::array<Half, 2> halves_;  ///< for adaptive sampling
     int least_, most_;            ///< samples of a pixel
@@ -192,6 +193,7 @@ TileRays::TileRays(const FrameScene& scene, const Tile& tile)
     : scene_(scene),
       tile_(tile),
       settings_(scene.picture().settings),
+      limit_(settings_.ray_limit()),
       whole_({scene.pattern()}),
       halves_({Half{scene.pattern(), 0, 2}, Half{second_pattern(scene.pattern()), 1, 2}}),
       least_(settings_.least_samples()) {

@@ -89,6 +89,10 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
     plan.decide("moving noise", needs.moving_noise, "every frame has random numbers of its own",
                 scene.render.lock_noise ? "lock_noise = true: every frame has those of frame 0"
                                         : "nothing in the picture is random");
+    plan.decide(
+        "distance limit", scene.render.max_distance > 0,
+        fmt::format("max_distance = {}: no ray meets a body farther on", scene.render.max_distance),
+        "max_distance = 0: rays go on for ever");
     plan.decide("noise target", needs.more_samples,
                 fmt::format("{} to {} samples a pixel", samples, most),
                 fmt::format("every pixel has {} samples", samples));
@@ -146,7 +150,7 @@ void count_off_slice(const Scene& scene, Plan& plan) {
     const render::Picture picture = picture_of(scene, camera);
     const render::Camera frame(camera, scene.render.width, scene.render.height);
     const auto seen = render::slice_bounds(render::place_bodies(picture, frame.origin()), frame,
-                                           scene.render.max_distance, {-half, half})
+                                           scene.render.ray_limit(), {-half, half})
                           .size();
     plan.decide("bodies off the slice", false, "",
                 fmt::format("{} of {} visible bodies of frame 0 are met by no view ray, only by "

@@ -42,7 +42,7 @@ struct TracedScene {
     }
 
     Color radiance(const Vec4& direction, const Sampler& sampler) const {
-        const Ray ray = {Vec4::Zero(), direction};
+        const Ray ray = {Vec4::Zero(), direction, kNoBody, scene.settings.ray_limit()};
         const GlassBodies& glass = integrator->glass();
         const std::uint32_t medium = glass.medium_at(ray.origin, glass.about(ray.origin, 0));
         const GlassBodies::Event event =
