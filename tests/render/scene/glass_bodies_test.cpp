@@ -154,6 +154,36 @@ TEST(GlassBodies, AreHiddenInLaterOnesThatHoldAllOfThem) {
     EXPECT_GT(seen, 100);
 }
 
+TEST(GlassBodies, OneCornerThatSticksOutIsSeen) {
+    // A box whose corners are 1 m from its centre, which is moved by 0.1 m toward one of them: that
+    // is 1.1 m from the ball's centre, its neighbours sqrt(1 + 0.1^2 + 0.1) = 1.054 m.
+    for (unsigned corner = 0; corner < 16; ++corner) {
+        Vec4 toward;
+        for (int axis = 0; axis < 4; ++axis) toward[axis] = corner >> axis & 1 ? 0.5 : -0.5;
+        for (const double radius : {1.08, 1.101}) {
+            TestScene scene;
+            scene.materials[0].kind = MaterialKind::kGlass;
+            scene.add(Hyperbox{Vec4::Ones()}, 0.1 * toward);
+            scene.add(Hypersphere{radius}, Vec4::Zero());
+            const Placed p(scene);
+            EXPECT_EQ(p.glass.hidden_in(0), radius > 1.1 ? 1u : GlassBodies::kNone) << corner;
+        }
+    }
+}
+
+TEST(GlassBodies, OfParallelPlanesTheLowerOneIsHidden) {
+    for (const double offset : {-1.0, 0.0, 1.0}) {
+        TestScene scene;
+        scene.materials[0].kind = MaterialKind::kGlass;
+        scene.add(Hyperplane{Vec4::UnitY(), 0}, Vec4::Zero());
+        scene.add(Hyperplane{Vec4::UnitY(), offset}, Vec4::Zero());
+        scene.add(Hypersphere{0.3}, {0, 0, 0, 1});
+        const Placed p(scene);
+        EXPECT_EQ(p.glass.hidden_in(0), offset < 0 ? GlassBodies::kNone : 1u) << offset;
+        EXPECT_EQ(p.glass.hidden_in(2), GlassBodies::kNone);
+    }
+}
+
 TEST(GlassBodies, EmptySpaceHasIndexOne) {
     Random random(542);
     const Placed p(glass_cloud(random, 9));
