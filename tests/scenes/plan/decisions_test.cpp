@@ -206,6 +206,16 @@ TEST(PlanOfAPicture, SaysWhetherNoiseMoves) {
     EXPECT_FALSE(needs(load_text(light + ball(0), {"render.samples=1"}), "moving noise"));
 }
 
+TEST(PlanOfAPicture, SaysWhereRaysEnd) {
+    // The default camera is some 8 m from the ball.
+    const std::string mirror = kMaterials + ball(0, "material = \"mirror\"");
+    const Frame without(mirror), near(mirror, {"render.max_distance=5"});
+    EXPECT_FALSE(needs(without.scene, "distance limit"));
+    EXPECT_GT(without.stats.bounce_rays, 0u);
+    EXPECT_TRUE(needs(near.scene, "distance limit"));
+    EXPECT_EQ(near.stats.bounce_rays, 0u);
+}
+
 TEST(PlanOfAPicture, SaysWhereViewRaysStart) {
     const auto is_pinhole = [](const Scene& scene) {
         const render::Picture picture = {scene.bodies, scene.appearance, scene.materials,
