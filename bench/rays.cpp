@@ -236,7 +236,7 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
                 const Settings& settings = scene.picture().settings;
                 const Vec3 view = scene.opening().camera.ray_direction({x + 0.5, y + 0.5});
                 const Ray ray = scene.opening().camera.to_world(ViewRay{Vec3::Zero(), view},
-                                                                settings.max_distance);
+                                                                settings.ray_limit());
                 const Hit hit = list.nearest(scene.opening().placed, view, ray, settings, m.stats);
                 if (hit) surfaces.push_back(scene.opening().shading.surface(hit, ray));
             }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -115,7 +116,8 @@ struct Settings {
     double clamp_indirect = 0;  ///< of a sample, see PathIntegrator; 0: no bound [radiance]
     Intersector intersector = Intersector::kTrace;
     int max_steps = 200;
-    double max_distance = 200;  ///< along a view ray [m]
+    /// What is farther along a ray of any kind is not met, but for lights [m]; 0: no limit.
+    double max_distance = 0;
     int tile = 32;
     FilterKind filter = FilterKind::kBox;
     double filter_width = 1;  ///< of its support [pixels]
@@ -128,6 +130,9 @@ struct Settings {
     double exposure = 0;  ///< previews only [stops]
     std::optional<Crop> crop;
 
+    double ray_limit() const {
+        return max_distance > 0 ? max_distance : std::numeric_limits<double>::infinity();
+    }
     /// The pixels that are rendered: all, or the crop.
     Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
     /// Of a pixel. With a noise target a pixel has 8 at least: fewer tell nothing of its noise.

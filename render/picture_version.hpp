@@ -7,6 +7,8 @@ namespace tesserae::render {
 /// versions are not mixed in one folder.
 /// 2: frames after the first have random numbers of their own; adaptive sampling without a bias;
 /// while the shutter is open bodies turn at their angular velocities.
-constexpr int kPictureVersion = 2;
+/// 3: rays have no end unless max_distance is given, which holds for all rays; filters wider than a
+/// pixel lose nothing; a camera may stand in glass; of overlapping glass the last body rules.
+constexpr int kPictureVersion = 3;
 
 }  // namespace tesserae::render

@@ -42,6 +42,8 @@ void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint3
     wave.live.push_back(static_cast<std::uint32_t>(wave.paths.size()));
     LightPath& path = wave.paths.emplace_back(LightPath{sample.ray, sample.sampler, index});
     if (sample.first) path.surface = *sample.first;
+    path.medium = sample.start.medium;
+    path.is_exit = sample.start.is_exit;
     path.ray.limit = sample.first ? sample.first->distance : kMiss;
     path.light = lights_.first_sphere(path.ray).sphere;
 }
@@ -59,7 +61,7 @@ void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
         LightPath& path = wave.paths[i];
         const GlassBodies::Event event = path.is_in_glass()
                                              ? glass_.next(path.medium, path.ray, stats)
-                                             : GlassBodies::Event{*hit++};
+                                             : GlassBodies::Event{glass_.ruling(*hit++, path.ray)};
         path.surface.reset();
         if (event.hit) path.surface = shading_.surface(event.hit, path.ray);
         path.is_exit = event.is_exit;
@@ -84,8 +86,8 @@ std::uint32_t LightIntegrator::first_group(int scattered, std::size_t lamps) con
     return static_cast<std::uint32_t>(groups) * static_cast<std::uint32_t>(scattered);
 }
 
-void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) {
-    path.ray = {path.surface->point, direction, path.surface->body};
+void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) const {
+    path.ray = {path.surface->point, direction, path.surface->body, settings_.ray_limit()};
     path.density = density;
     path.normal = path.surface->normal;
     path.is_view = false;
@@ -107,6 +109,8 @@ void LightIntegrator::scatter_specular(LightPath& path, double choice) const {
             path.medium = beyond;
             weight = radiance_scale(ratio) * s.albedo;
         }
+        if (!path.is_in_glass())
+            path.ray.origin = glass_.start_outside(s.body, s.point, path.ray.direction);
     }
     path.throughput *= weight;
 }

@@ -16,11 +16,18 @@
 
 namespace tesserae::render {
 
+/// How a view ray stands to glass.
+struct GlassStart {
+    std::uint32_t medium = GlassBodies::kNone;  ///< the glass that it begins in
+    bool is_exit = false;  ///< what it meets first is met from inside: the way out of the medium
+};
+
 /// A sample's view ray and the rest that decides what comes along it.
 struct ViewSample {
     const Surface* first;  ///< what the ray meets; null if nothing
     Ray ray;
     Sampler sampler;  ///< of the sample; its groups are used from 0 on
+    GlassStart start{};
 };
 
 /// Light followed from the viewer back: the ray that it has come to, what that meets (a surface, a
@@ -74,6 +81,9 @@ class LightIntegrator {
     virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                           FrameStats& stats) const = 0;
 
+    /// What view rays begin in and go into, for who traces them.
+    const GlassBodies& glass() const { return glass_; }
+
   protected:
     /// Adds the path of a view ray, arrived where that arrives.
     void begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const;
@@ -87,7 +97,7 @@ class LightIntegrator {
     /// for the choice of lights, one for each sun and for each lamp that is asked.
     std::uint32_t first_group(int scattered, std::size_t lamps) const;
     /// Sends a path on from its surface.
-    static void leave(LightPath& path, const Vec4& direction, double density);
+    void leave(LightPath& path, const Vec4& direction, double density) const;
     /// The same from a mirror or glass.
     /// @param choice   uniform in [0, 1): between reflection and refraction
     void scatter_specular(LightPath& path, double choice) const;

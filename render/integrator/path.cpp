@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "render/integrator/integrator.hpp"
@@ -137,7 +138,8 @@ Color PathIntegrator::light_of_body(const Surface& s, const Bsdf& bsdf, const La
     const PlacedBody& body = placed_.bodies[lamp.body];
     const auto toward = sample_toward(*body.shape, placed_.point_to_body(body, s.point), u);
     if (!toward) return Color::Zero();
-    Ray ray = {s.point, placed_.direction_to_world(body, toward->direction), s.body};
+    Ray ray = {s.point, placed_.direction_to_world(body, toward->direction), s.body,
+               settings_.ray_limit()};
     const double cosine = s.normal.dot(ray.direction);
     if (!(cosine > 0)) return Color::Zero();
     const double distance = hit_distance(placed_, lamp.body, ray, settings_, stats);
@@ -171,7 +173,9 @@ double PathIntegrator::lamp_density(const LightPath& path) const {
 
 bool PathIntegrator::is_lit(const Ray& toward_light, FrameStats& stats) const {
     ++stats.shadow_rays;
-    return !scene_->is_blocked(toward_light, stats);
+    Ray ray = toward_light;
+    ray.limit = std::min(ray.limit, settings_.ray_limit());
+    return !scene_->is_blocked(ray, stats);
 }
 
 }  // namespace tesserae::render

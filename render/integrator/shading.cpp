@@ -32,7 +32,7 @@ Color albedo_at(const Material& m, const Vec4& point) {
 Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
                  const LightSet& lights, const RoughReflections& rough)
     : picture_(picture), placed_(placed), lights_(lights), rough_(rough) {
-    if (needs_of(picture).shadow_rays) shadows_.emplace(placed, tree);
+    if (needs_of(picture).shadow_rays) shadows_.emplace(placed, tree, picture.settings.ray_limit());
 }
 
 Surface Shading::surface(const Hit& hit, const Ray& ray) const {

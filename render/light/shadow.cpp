@@ -54,7 +54,7 @@ bool Shadows::is_hidden(const Ray& ray, FrameStats& stats) const {
 double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint32_t on,
                            FrameStats& stats) const {
     ++stats.shadow_rays;
-    const Ray ray = {point, light.toward, on, light.limit};
+    const Ray ray = {point, light.toward, on, std::min(light.limit, limit_)};
     if (light.angle == 0) return is_hidden(ray, stats) ? 0 : 1;
 
     // The cone that can still matter narrows to the nearest rim found.

@@ -21,12 +21,14 @@ double visible_part(double x);
 /// How much of a light reaches a point: 0 to 1. The rim of the body that covers most of the disc
 /// decides, as in a distance field of the whole scene; the rim counts as flat, and a small disc of
 /// directions as a Euclidean ball. A hard light is hidden or not. A body counts as far as it comes
-/// before the light's limit along the ray to the disc's middle: what stands beside a sphere light,
-/// between its near side and its rim, is decided by that.
+/// before the limit, the light's or one of all rays, along the ray to the disc's middle: what
+/// stands beside a sphere light, between its near side and its rim, is decided by that.
 class Shadows {
   public:
-    /// @param tree   of the bodies; it must outlive this, like them
-    Shadows(const PlacedBodies& placed, const BodyTree& tree) : placed_(placed), tree_(tree) {}
+    /// @param tree    of the bodies; it must outlive this, like them
+    /// @param limit   bodies farther along a ray shade nothing [m]
+    Shadows(const PlacedBodies& placed, const BodyTree& tree, double limit = kMiss)
+        : placed_(placed), tree_(tree), limit_(limit) {}
 
     /// @param point   relative to the camera, world axes
     /// @param on      the body that it lies on: left out, as a convex body never shades its own lit
@@ -41,6 +43,7 @@ class Shadows {
 
     const PlacedBodies& placed_;
     const BodyTree& tree_;
+    double limit_;
 };
 
 }  // namespace tesserae::render

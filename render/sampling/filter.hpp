@@ -20,6 +20,9 @@ class PixelFilter {
     /// @param u   uniform in [0, 1)^2
     Vec2 place(const Vec2& u) const { return {0.5 + offset(u.x()), 0.5 + offset(u.y())}; }
 
+    /// How far samples fall beyond the pixel's sides at most [pixels].
+    double reach() const { return width_ > 1 ? 0.5 * (width_ - 1) : 0; }
+
   private:
     double offset(double u) const;
 

@@ -1,13 +1,14 @@
 #include "render/scene/glass_bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tesserae::render {
 namespace {
 
-/// A point deeper than this part of the lengths involved is inside: rounding leaves points of a
-/// surface on either side of it.
+/// A point deeper than this part of the lengths involved is inside, one less deep on the surface:
+/// rounding leaves points of a surface on either side of it.
 constexpr double kInside = 1e-9;
 
 const Material& material_of(const Picture& picture, BodyId id) {
@@ -18,6 +19,54 @@ double distance_of(const PlacedBodies& placed, const PlacedBody& body, const Vec
     return std::visit(
         [&](const auto& s) { return signed_distance(s, placed.point_to_body(body, point)); },
         *body.shape);
+}
+
+/// Out of the body, unit, world axes.
+Vec4 normal_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point) {
+    const Vec4 local = placed.point_to_body(body, point);
+    const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
+    return placed.direction_to_world(body, out);
+}
+
+/// A point of a bounded body that is farthest along a direction.
+Vec4 support_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& direction) {
+    const Vec4 along = placed.direction_to_body(body, direction);
+    const Vec4 point = std::visit([&](const auto& s) { return support(s, along); }, *body.shape);
+    return body.centre + placed.direction_to_world(body, point);
+}
+
+/// Whether a body holds all of another, to rounding. The distance from `outer` is convex, so that
+/// it is greatest in extreme points of `inner`. From any point the one that is farthest along the
+/// distance's gradient has a greater one; such climbs begin at corners of `inner` and where it is
+/// nearest to the sides of `outer`, as from there no climb can miss the greatest: of a shape that
+/// has neither, all climbs end in the same point.
+bool holds(const PlacedBodies& placed, const PlacedBody& outer, const PlacedBody& inner) {
+    if (inner.radius == kInfinite) {
+        const auto* a = std::get_if<Hyperplane>(outer.shape);
+        const auto* b = std::get_if<Hyperplane>(inner.shape);
+        return a && b && a->normal == b->normal && b->offset <= a->offset;
+    }
+    constexpr int kSteps = 32;
+    const auto sticks_out = [&](Vec4 direction) {
+        for (int i = 0; i < kSteps; ++i) {
+            const Vec4 point = support_of(placed, inner, direction);
+            if (distance_of(placed, outer, point) > kInside * (inner.radius + point.norm()))
+                return true;
+            const Vec4 next = normal_of(placed, outer, point);
+            if (next == direction) break;
+            direction = next;
+        }
+        return false;
+    };
+    for (unsigned corner = 0; corner < 16; ++corner) {
+        Vec4 direction;
+        for (int axis = 0; axis < 4; ++axis) direction[axis] = corner >> axis & 1 ? 0.5 : -0.5;
+        if (sticks_out(placed.direction_to_world(inner, direction))) return false;
+    }
+    for (int axis = 0; axis < 4; ++axis)
+        for (const double side : {1.0, -1.0})
+            if (sticks_out(placed.direction_to_world(outer, side * Vec4::Unit(axis)))) return false;
+    return true;
 }
 
 }  // namespace
@@ -74,8 +123,33 @@ void GlassBodies::find_neighbours() {
     }
 }
 
+std::uint32_t GlassBodies::hidden_in(std::uint32_t body) const {
+    if (!is_glass(body)) return kNone;
+    const auto& others = neighbours_[slot_[body]];
+    for (auto other = others.rbegin(); other != others.rend() && *other > body; ++other)
+        if (is_glass(*other) && holds(placed_, placed_.bodies[*other], placed_.bodies[body]))
+            return *other;
+    return kNone;
+}
+
 double GlassBodies::refractive_index(std::uint32_t medium) const {
     return medium == kNone ? 1 : material_of(picture_, placed_.bodies[medium].id).ior;
+}
+
+std::vector<std::uint32_t> GlassBodies::about(const Vec4& point, double reach) const {
+    std::vector<std::uint32_t> bodies;
+    for (auto i = static_cast<std::uint32_t>(slot_.size()); i-- > 0;)
+        if (is_glass(i) && distance_of(placed_, placed_.bodies[i], point) <= reach)
+            bodies.push_back(i);
+    return bodies;
+}
+
+std::uint32_t GlassBodies::medium_at(const Vec4& point,
+                                     std::span<const std::uint32_t> bodies) const {
+    const auto ruler = std::find_if(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
+        return depth(body, point) > kInside;
+    });
+    return ruler == bodies.end() ? kNone : *ruler;
 }
 
 GlassBodies::Event GlassBodies::next(std::uint32_t medium, Ray ray, FrameStats& stats) const {
@@ -87,24 +161,55 @@ GlassBodies::Event GlassBodies::next(std::uint32_t medium, Ray ray, FrameStats& 
         },
         *glass.shape);
     Hit hit;
-    ray.limit = exit;
+    const double limit = ray.limit;
+    ray.limit = std::min(exit, limit);
     for (const std::uint32_t body : neighbours_[slot_[medium]]) {
-        if (body == ray.on || (is_glass(body) && body > medium)) continue;
+        if (body == ray.on || (is_glass(body) && body < medium)) continue;
         if (hit.take(body, hit_distance(placed_, body, ray, picture_.settings, stats)))
             ray.limit = hit.distance;
     }
     // What is met where the ray leaves is outside.
-    if (exit <= hit.distance && exit < kMiss) return {{exit, medium}, true};
-    return {hit, false};
+    if (exit <= hit.distance && exit <= limit && exit < kMiss) return {{exit, medium}, true};
+    return {ruling(hit, ray), false};
+}
+
+/// The lengths involved in where a point is in a body [m].
+double GlassBodies::scale(std::uint32_t body, const Vec4& point) const {
+    const PlacedBody& b = placed_.bodies[body];
+    return point.norm() + (b.radius < kInfinite ? b.radius : b.centre.norm());
+}
+
+/// How deep a point lies in a body, in parts of the lengths involved.
+double GlassBodies::depth(std::uint32_t body, const Vec4& point) const {
+    return -distance_of(placed_, placed_.bodies[body], point) / scale(body, point);
+}
+
+Hit GlassBodies::ruling(Hit hit, const Ray& ray) const {
+    if (!hit || !is_glass(hit.body)) return hit;
+    const auto& others = neighbours_[slot_[hit.body]];
+    const Vec4 point = ray.at(hit.distance);
+    for (auto other = others.rbegin(); other != others.rend() && *other > hit.body; ++other)
+        if (*other != ray.on && is_glass(*other) && std::abs(depth(*other, point)) <= kInside &&
+            normal_of(placed_, placed_.bodies[*other], point).dot(ray.direction) < 0)
+            return {hit.distance, *other};
+    return hit;
+}
+
+Vec4 GlassBodies::start_outside(std::uint32_t body, Vec4 point, const Vec4& direction) const {
+    for (const std::uint32_t other : neighbours_[slot_[body]]) {
+        if (!is_glass(other) || std::abs(depth(other, point)) > kInside) continue;
+        const Vec4 out = normal_of(placed_, placed_.bodies[other], point);
+        if (out.dot(direction) > 0) point += 2 * kInside * scale(other, point) * out;
+    }
+    return point;
 }
 
 std::uint32_t GlassBodies::medium_beyond(std::uint32_t body, const Vec4& point) const {
-    for (const std::uint32_t other : neighbours_[slot_[body]]) {
-        const PlacedBody& o = placed_.bodies[other];
-        const double scale = point.norm() + (o.radius < kInfinite ? o.radius : 0);
-        if (is_glass(other) && distance_of(placed_, o, point) < -kInside * scale) return other;
-    }
-    return kNone;
+    const auto& others = neighbours_[slot_[body]];
+    const auto ruler = std::find_if(others.rbegin(), others.rend(), [&](std::uint32_t other) {
+        return is_glass(other) && depth(other, point) > kInside;
+    });
+    return ruler == others.rend() ? kNone : *ruler;
 }
 
 }  // namespace tesserae::render

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "render/scene/intersect.hpp"
 
 namespace tesserae::render {
 
-/// The insides of bodies of glass. Where several overlap, the one with the lowest number rules: a
-/// point's medium is the lowest glass body that holds it, and the others' surfaces are not there.
+/// The insides of bodies of glass. Where several overlap, the one that is declared last rules: a
+/// point's medium is the glass body of the highest number that holds it, and the others' surfaces
+/// are not there. A body that is not of glass is seen in any glass that holds it.
 /// A ray inside a glass body leaves it before it can meet anything that does not reach into it, so
 /// each has a list of the bodies that do.
 class GlassBodies {
@@ -19,7 +21,16 @@ class GlassBodies {
     /// @param picture, placed   must outlive it
     GlassBodies(const Picture& picture, const PlacedBodies& placed);
 
+    bool is_empty() const { return neighbours_.empty(); }
+    bool is_glass(std::uint32_t body) const { return slot_[body] != kNone; }
     double refractive_index(std::uint32_t medium) const;
+
+    /// The bodies of glass that come this near to a point [m], last one first: what medium_at needs
+    /// to know of points about it.
+    std::vector<std::uint32_t> about(const Vec4& point, double reach) const;
+    /// The medium at a point: the first of the bodies that holds it.
+    /// @param bodies   of glass, last one first: all that can hold it
+    std::uint32_t medium_at(const Vec4& point, std::span<const std::uint32_t> bodies) const;
 
     struct Event {
         Hit hit;
@@ -27,15 +38,28 @@ class GlassBodies {
     };
     /// What a ray inside the glass body `medium` meets next: a body in the glass, a glass that
     /// rules there, or the medium's own surface from inside (in closed form, whatever the
-    /// intersector). No hit: it never leaves (an infinite half-space).
-    /// @param ray   its limit does not count; if it is `on` the medium, it leaves by the far side
+    /// intersector). No hit: it never leaves (an infinite half-space), or not before its limit.
+    /// @param ray   if it is `on` the medium, it leaves by the far side
     Event next(std::uint32_t medium, Ray ray, FrameStats& stats) const;
+
+    /// Where a ray goes into several bodies of glass in one place, the hit on the one that rules
+    /// there; other hits stay as they are.
+    Hit ruling(Hit hit, const Ray& ray) const;
+
+    /// Where a ray that leaves a glass body outward begins, so that it is clear of others whose
+    /// surfaces lie in the same place: a ray is `on` one body only. Else the point itself.
+    Vec4 start_outside(std::uint32_t body, Vec4 point, const Vec4& direction) const;
 
     /// The medium just outside a glass body, at a point of its surface.
     std::uint32_t medium_beyond(std::uint32_t body, const Vec4& point) const;
 
+    /// The last of the bodies of glass that come after a glass body and hold all of it, so that it
+    /// is not seen; kNone if there is none.
+    std::uint32_t hidden_in(std::uint32_t body) const;
+
   private:
-    bool is_glass(std::uint32_t body) const { return slot_[body] != kNone; }
+    double scale(std::uint32_t body, const Vec4& point) const;
+    double depth(std::uint32_t body, const Vec4& point) const;
     bool reach_each_other(std::uint32_t a, std::uint32_t b) const;
     void find_neighbours();
 

@@ -33,6 +33,8 @@ double trace(const S& shape, const Vec4& origin, const Vec4& direction, double s
         t += std::max(distance, distance / -slope);
         if (t > end) return kMiss;
     }
+    // A step along a surface may overflow: from there all distances are infinite or no numbers.
+    if (!(t < kMiss)) return kMiss;
     ++stats.unresolved;
     return t;
 }

@@ -97,7 +97,7 @@ ViewScene::ViewScene(const PlacedBodies& placed, const Camera& camera, const Set
                      const SliceRange& range, double reach)
     : placed_(placed), camera_(camera), settings_(settings), range_(range), reach_(reach) {
     // A ray from the side reaches as far as one from the camera that may go farther.
-    for (const SliceBounds& s : slice_bounds(placed, camera, settings.max_distance + reach, range))
+    for (const SliceBounds& s : slice_bounds(placed, camera, settings.ray_limit() + reach, range))
         if (s.radius < kInfinite)
             slice_.push_back(s);
         else
@@ -117,7 +117,7 @@ void ViewScene::nearest(std::span<const ViewRay> rays, std::span<Hit> hits,
         // Embree's own assertions end the program on a NaN.
         TSR_ASSERT(r.origin.norm() <= reach_ && r.direction.allFinite());
         TSR_ASSERT(r.fourth >= range_.low && r.fourth <= range_.high);
-        query.ray = camera_.to_world(r, settings_.max_distance);
+        query.ray = camera_.to_world(r, settings_.ray_limit());
         query.hit = {};
         for (const std::uint32_t body : unbounded_) query.test(body);
         if (embree_) {

@@ -25,7 +25,7 @@ class ViewScene {
               const SliceRange& range, double reach);
     ~ViewScene();
 
-    /// What each ray meets first within settings.max_distance.
+    /// What each ray meets first within settings.ray_limit().
     /// @param rays   finite
     /// @param hits   as many
     void nearest(std::span<const ViewRay> rays, std::span<Hit> hits, FrameStats& stats) const;

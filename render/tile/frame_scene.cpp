@@ -104,7 +104,9 @@ Instant::Instant(const Picture& picture, const CameraDescription& d, const Slice
       tree(tree_of(picture, placed)),
       shading(picture, placed, tree, lights, rough),
       integrator(make_integrator(picture, placed, tree, lights, shading)),
-      rays(description, camera) {}
+      rays(description, camera),
+      glass_about(integrator->glass().about(
+          Vec4::Zero(), std::hypot(rays.reach(), rays.range().low, rays.range().high))) {}
 
 FrameScene::FrameScene(const Picture& picture, bool wants_color)
     : picture_(picture),
@@ -125,9 +127,12 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
             instants_.push_back(std::make_unique<Instant>(picture, camera, sheet_, bodies, rough_));
         }
     }
-    const double far = picture.settings.max_distance;
+    const double far = picture.settings.ray_limit();
     if (is_pinhole()) {
         slice_ = slice_bounds(opening().placed, opening().camera, far);
+        // What a pixel's samples meet may lie beside the pixel.
+        const double reach = filter_.reach();
+        for (SliceBounds& s : slice_) s.x0 -= reach, s.y0 -= reach, s.x1 += reach, s.y1 += reach;
         return;
     }
     for (const auto& instant : instants_)

@@ -23,7 +23,8 @@ struct Instant {
     Shading shading;
     std::unique_ptr<const LightIntegrator> integrator;
     CameraRays rays;
-    std::optional<ViewScene> view;  ///< none where FrameScene::slice serves
+    std::vector<std::uint32_t> glass_about;  ///< GlassBodies::about where view rays begin
+    std::optional<ViewScene> view;           ///< none where FrameScene::slice serves
 
     /// @param bodies   their poses at the instant; only read here
     Instant(const Picture& picture, const CameraDescription& description, const SliceSheet& sheet,
@@ -57,7 +58,8 @@ class FrameScene {
     bool is_still() const { return instants_.size() == 1; }
 
     /// The slice's bounds for view rays that all start in the pinhole of one instant; else empty,
-    /// and every instant has a ViewScene.
+    /// and every instant has a ViewScene. Their film rectangles are grown by the filter's reach:
+    /// they hold every pixel of which a sample can meet the body.
     const std::vector<SliceBounds>& slice() const { return slice_; }
     bool is_pinhole() const { return is_still() && opening().rays.is_pinhole(); }
 

@@ -84,16 +84,18 @@ class TileRays {
     void add_centre(const Cell& cell, int x, int y);
     void add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index);
     void add_view(const Instant& instant, const ViewRay& ray) {
-        views_.emplace_back(instant, ray, settings_.max_distance);
+        views_.emplace_back(instant, ray, limit_);
     }
     // Of views_:
     void trace();
+    void look_out_of_glass();
     void add_radiance(Filtered& sum, const Half& half, int x, int y);
     void find_radiance(const Sampler& first);
 
     const FrameScene& scene_;
     const Tile& tile_;
     const Settings& settings_;
+    double limit_;  ///< of rays [m]
     Half whole_;
     std::array<Half, 2> halves_;  ///< for adaptive sampling
     int least_, most_;            ///< samples of a pixel
@@ -102,6 +104,7 @@ class TileRays {
     std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
     std::vector<ViewRay> rays_;
     std::vector<Hit> hits_;
+    std::vector<GlassStart> starts_;  ///< empty where nothing is of glass
     std::vector<ViewSample> samples_;
     std::vector<Color> colors_;
 };
@@ -190,6 +193,7 @@ TileRays::TileRays(const FrameScene& scene, const Tile& tile)
     : scene_(scene),
       tile_(tile),
       settings_(scene.picture().settings),
+      limit_(settings_.ray_limit()),
       whole_({scene.pattern()}),
       halves_({Half{scene.pattern(), 0, 2}, Half{second_pattern(scene.pattern()), 1, 2}}),
       least_(settings_.least_samples()) {
@@ -253,9 +257,26 @@ void TileRays::trace() {
         for (std::size_t i = 0; i < views_.size(); ++i)
             views_[i].instant->view->nearest({&views_[i].in_slice, 1}, {&hits_[i], 1}, stats);
     }
+    if (!scene_.opening().integrator->glass().is_empty()) look_out_of_glass();
     for (std::size_t i = 0; i < views_.size(); ++i)
         if (hits_[i])
             views_[i].surface = views_[i].instant->shading.surface(hits_[i], views_[i].ray);
+}
+
+/// What is met first by rays that begin inside glass, which the searches take for met at once.
+void TileRays::look_out_of_glass() {
+    starts_.clear();
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+        const View& view = views_[i];
+        const GlassBodies& glass = view.instant->integrator->glass();
+        const std::uint32_t medium = glass.medium_at(view.ray.origin, view.instant->glass_about);
+        const bool is_inside = medium != GlassBodies::kNone;
+        const GlassBodies::Event event = is_inside
+                                             ? glass.next(medium, view.ray, stats)
+                                             : GlassBodies::Event{glass.ruling(hits_[i], view.ray)};
+        hits_[i] = event.hit;
+        starts_.push_back({medium, event.is_exit});
+    }
 }
 
 /// Of the views of the half's next samples.
@@ -284,6 +305,7 @@ void TileRays::find_radiance(const Sampler& first) {
     for (std::uint32_t i = 0; i < views_.size(); ++i)
         samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
                             first.of(first.index() + i)});
+    for (std::size_t i = 0; i < starts_.size(); ++i) samples_[i].start = starts_[i];
     colors_.resize(views_.size());
     // Those of one instant together.
     for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {

@@ -108,8 +108,6 @@ constexpr double kBeside = 0.35, kAbove = 0.25, kBefore = 0.9;
 /// Parts of the height: by which the camera stands still higher, and where it looks, a little below
 /// the middle, since heaps fall.
 constexpr double kEyeHeight = 0.6, kTargetHeight = 0.4;
-/// View rays end at so many distances, far behind the block.
-constexpr double kSight = 10;
 
 /// The tables that all have in common; the camera looks at a block of this height and width, in the
 /// slice at `fourth`.
@@ -129,7 +127,6 @@ field_of_view = 45
 
 [render]
 samples = 4
-max_distance = {}
 
 [[light]]
 type = "sun"
@@ -158,7 +155,7 @@ pattern_albedo = [0.93, 0.86, 0.75]
 pattern_size = 0.25
 )",
                        name, physics, toml_text(position),
-                       toml_text(Vec4(0, kTargetHeight * height, 0, fourth)), kSight * far);
+                       toml_text(Vec4(0, kTargetHeight * height, 0, fourth)));
 }
 
 std::string gas(std::uint64_t bodies) {

@@ -206,7 +206,7 @@ void ray_keys(auto& self, const auto& visit) {
     visit("clamp_indirect", self.clamp_indirect, Rule::kNonNegative);
     visit("intersector", self.intersector, Names{kIntersectors});
     visit("max_steps", self.max_steps, IntegerRange{1, kMaxSteps});
-    visit("max_distance", self.max_distance, Rule::kPositive);
+    visit("max_distance", self.max_distance, Rule::kNonNegative);
     visit("tile", self.tile, IntegerRange{8, 512});
 }
 /// [render]: the files

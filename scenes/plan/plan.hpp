@@ -24,6 +24,8 @@ struct Plan {
         decisions.push_back({std::move(part), needed, std::move(needed ? if_needed : if_not)});
     }
 
+    std::vector<std::string> warnings;  ///< of what is surely not meant
+
     bool moves = false;  ///< some body changes its pose: steps are taken
 
     std::uint64_t bodies = 0, movable_bodies = 0;

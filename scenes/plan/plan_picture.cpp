@@ -1,10 +1,14 @@
 #include "scenes/plan/plan_picture.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "core/error.hpp"
 #include "render/camera/camera.hpp"
 #include "render/light/lamps.hpp"
 #include "render/material/bsdf.hpp"
 #include "render/picture_needs.hpp"
+#include "render/scene/glass_bodies.hpp"
 #include "render/scene/slice.hpp"
 #include "render/tile/frame_scene.hpp"
 #include "scenes/load/picture_keys.hpp"
@@ -85,6 +89,10 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
     plan.decide("moving noise", needs.moving_noise, "every frame has random numbers of its own",
                 scene.render.lock_noise ? "lock_noise = true: every frame has those of frame 0"
                                         : "nothing in the picture is random");
+    plan.decide(
+        "distance limit", scene.render.max_distance > 0,
+        fmt::format("max_distance = {}: no ray meets a body farther on", scene.render.max_distance),
+        "max_distance = 0: rays go on for ever");
     plan.decide("noise target", needs.more_samples,
                 fmt::format("{} to {} samples a pixel", samples, most),
                 fmt::format("every pixel has {} samples", samples));
@@ -106,6 +114,34 @@ void decide_picture(const Scene& scene, Plan& plan) {
             plan.decide(fmt::format("channel {}", name), false, "", "not in channels");
 }
 
+void warn_of_hidden_glass(const Scene& scene, Plan& plan) {
+    const bool any_glass = std::any_of(
+        scene.materials.begin(), scene.materials.end(),
+        [](const render::Material& m) { return m.kind == render::MaterialKind::kGlass; });
+    if (!any_glass) return;
+    const render::Picture picture = picture_of(scene, scene.camera);
+    const render::PlacedBodies placed = render::place_bodies(picture, Vec4::Zero());
+    const render::GlassBodies glass(picture, placed);
+    const auto name_at = [&](BodyId id) {
+        return std::prev(std::upper_bound(scene.names.begin(), scene.names.end(), id,
+                                          [](BodyId i, const auto& run) { return i < run.first; }));
+    };
+    // One line for a [[body]] or [[lattice]], whatever the number of its bodies.
+    const NamedBodies* last = nullptr;
+    for (std::uint32_t i = 0; i < placed.bodies.size(); ++i) {
+        const std::uint32_t outer = glass.hidden_in(i);
+        if (outer == render::GlassBodies::kNone) continue;
+        const NamedBodies* inner = &*name_at(placed.bodies[i].id);
+        if (inner == last) continue;
+        last = inner;
+        plan.warnings.push_back(
+            fmt::format("{}\"{}\" lies wholly inside the glass \"{}\", which is declared later and "
+                        "rules there: it is not seen",
+                        inner->count > 1 ? "a body of " : "", inner->name,
+                        name_at(placed.bodies[outer].id)->name));
+    }
+}
+
 void count_off_slice(const Scene& scene, Plan& plan) {
     const auto visible =
         count_if_type(scene.bodies, [&](auto t) { return scene.appearance[t].visible; });
@@ -114,7 +150,7 @@ void count_off_slice(const Scene& scene, Plan& plan) {
     const render::Picture picture = picture_of(scene, camera);
     const render::Camera frame(camera, scene.render.width, scene.render.height);
     const auto seen = render::slice_bounds(render::place_bodies(picture, frame.origin()), frame,
-                                           scene.render.max_distance, {-half, half})
+                                           scene.render.ray_limit(), {-half, half})
                           .size();
     plan.decide("bodies off the slice", false, "",
                 fmt::format("{} of {} visible bodies of frame 0 are met by no view ray, only by "

@@ -16,5 +16,7 @@ inline std::uint64_t count_if_type(const Bodies& bodies, auto&& predicate) {
 void decide_picture(const Scene& scene, Plan& plan);
 /// Appends how many bodies the camera's slice misses. Looks at every body: only for who asks.
 void count_off_slice(const Scene& scene, Plan& plan);
+/// Warns of bodies of glass that nobody sees, as they lie in glass that is declared later.
+void warn_of_hidden_glass(const Scene& scene, Plan& plan);
 
 }  // namespace tesserae::scenes

@@ -39,7 +39,8 @@ Json to_json(const Plan& plan) {
             {"view_rays", plan.view_rays},
             {"memory_bytes", plan.memory_bytes},
             {"trajectory_bytes", plan.trajectory_bytes},
-            {"decisions", std::move(decisions)}};
+            {"decisions", std::move(decisions)},
+            {"warnings", plan.warnings}};
 }
 
 Json to_json(const SimulateReport& r) {
@@ -72,6 +73,7 @@ void print_plan(const Plan& plan) {
                1e-9 * static_cast<double>(plan.trajectory_bytes));
     for (const Decision& d : plan.decisions)
         fmt::print("{:9}   {}: {}\n", d.needed ? "needed" : "left out", d.part, d.reason);
+    for (const std::string& warning : plan.warnings) fmt::print("warning     {}\n", warning);
 }
 
 /// What commands on a scene share: the checked scene, its plan, and the threads to work on.
@@ -160,6 +162,7 @@ void film_command(const CommandLine& line) {
 void plan_command(const CommandLine& line) {
     Work work(line);
     count_off_slice(work.scene, work.plan);
+    warn_of_hidden_glass(work.scene, work.plan);
     if (line.json)
         fmt::print("{}\n", to_json(work.plan).dump());
     else

@@ -152,6 +152,7 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
     TestScene scene;
     scene.settings.width = 80, scene.settings.height = 60;
     scene.settings.samples = 1;
+    scene.settings.max_distance = 200;
     scene.camera = random_camera(random, 7);
     for (int i = 0; i < 40; ++i) {
         // One draw after the other: the order of a call's arguments is the compiler's.
@@ -261,7 +262,7 @@ TEST(Picture, FromInsideABodyIsThatBody) {
     }
 }
 
-TEST(Picture, OfAPlaneEndsAtTheHorizonOrTheDistanceLimit) {
+TEST(Picture, OfAPlaneEndsAtTheDistanceLimit) {
     TestScene scene;
     scene.settings.width = 20, scene.settings.height = 200;
     scene.settings.samples = 1;

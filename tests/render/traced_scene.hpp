@@ -35,16 +35,24 @@ struct TracedScene {
           integrator(make_integrator(picture, placed, tree, lights, shading)) {}
     TracedScene(const TracedScene&) = delete;
 
-    /// The surface that a ray meets.
+    /// The surface that a ray meets outside of glass.
     std::optional<Surface> first(const Ray& ray) const {
         const Hit hit = nearest_of_all(placed, ray, scene.settings, stats);
         return hit ? std::optional(shading.surface(hit, ray)) : std::nullopt;
     }
 
     Color radiance(const Vec4& direction, const Sampler& sampler) const {
-        const Ray ray = {Vec4::Zero(), direction};
-        const std::optional<Surface> met = first(ray);
-        const ViewSample sample = {met ? &*met : nullptr, ray, sampler};
+        const Ray ray = {Vec4::Zero(), direction, kNoBody, scene.settings.ray_limit()};
+        const GlassBodies& glass = integrator->glass();
+        const std::uint32_t medium = glass.medium_at(ray.origin, glass.about(ray.origin, 0));
+        const GlassBodies::Event event =
+            medium == GlassBodies::kNone
+                ? GlassBodies::Event{glass.ruling(
+                      nearest_of_all(placed, ray, scene.settings, stats), ray)}
+                : glass.next(medium, ray, stats);
+        std::optional<Surface> met;
+        if (event.hit) met = shading.surface(event.hit, ray);
+        const ViewSample sample = {met ? &*met : nullptr, ray, sampler, {medium, event.is_exit}};
         Color color;
         integrator->radiance({&sample, 1}, {&color, 1}, stats);
         return color;

@@ -40,9 +40,9 @@ struct Placed {
             },
             *placed.bodies[b].shape);
     }
-    /// The lowest glass body that holds a point, all of them tried.
+    /// The last glass body that holds a point, all of them tried.
     std::uint32_t medium_at(const Vec4& p, std::uint32_t except) const {
-        for (std::uint32_t b = 0; b < placed.bodies.size(); ++b)
+        for (auto b = static_cast<std::uint32_t>(placed.bodies.size()); b-- > 0;)
             if (b != except && is_glass(b) && distance(b, p) < 0) return b;
         return GlassBodies::kNone;
     }
@@ -71,7 +71,7 @@ TEST(GlassBodies, ListsLoseNoBody) {
             double expected = leaves ? inside : kMiss;
             bool is_exit = leaves;
             for (std::uint32_t b = 0; b < p.placed.bodies.size(); ++b) {
-                if (b == medium || (p.is_glass(b) && b > medium)) continue;
+                if (b == medium || (p.is_glass(b) && b < medium)) continue;
                 const double t = hit_distance(p.placed, b, ray, p.scene.settings, p.stats);
                 if (t < expected) expected = t, is_exit = false;
             }
@@ -110,6 +110,77 @@ TEST(GlassBodies, WhatTouchesFromOutsideIsNotInTheGlass) {
         EXPECT_TRUE(event.is_exit);
         EXPECT_EQ(event.hit.body, box);
         EXPECT_EQ(event.hit.distance, 1);
+    }
+}
+
+TEST(GlassBodies, AreHiddenInLaterOnesThatHoldAllOfThem) {
+    // Against many points of the inner body's surface: support points in random directions, which
+    // for a box are all of its corners. Where the farthest of them is near the outer body's
+    // surface, a farther one may have been missed, and nothing is asked.
+    Random random(543);
+    int hidden = 0, seen = 0;
+    for (int round = 0; round < 1500; ++round) {
+        TestScene scene;
+        scene.materials[0].kind = MaterialKind::kGlass;
+        const bool is_plane = round % 4 == 3;
+        const Rotor turns[] = {random_rotor(random), random_rotor(random)};
+        const Vec4 place = random_vector(random, 0.3);
+        const Shape inner = random_shape(random, round / 4 % 3, 0.4);
+        const Shape outer = is_plane ? Shape(Hyperplane{random_direction(random), 0.7})
+                                     : random_shape(random, round % 4, 1.3);
+        const bool inner_first = round % 5 != 0;
+        if (inner_first) scene.add(inner, place, turns[0]);
+        scene.add(outer, Vec4::Zero(), is_plane ? Rotor{} : turns[1]);
+        if (!inner_first) scene.add(inner, place, turns[0]);
+        const Placed p(scene);
+        const std::uint32_t first = inner_first ? 0 : 1;
+        const PlacedBody& body = p.placed.bodies[first];
+        double farthest = -kMiss;
+        for (int i = 0; i < 1000; ++i) {
+            const Vec4 along = p.placed.direction_to_body(body, random_direction(random));
+            const Vec4 point = std::visit([&](const auto& s) { return support(s, along); }, inner);
+            farthest = std::max(
+                farthest,
+                p.distance(1 - first, body.centre + p.placed.direction_to_world(body, point)));
+        }
+        if (std::abs(farthest) < 0.05) continue;
+        const bool is_hidden = farthest < 0 && inner_first;
+        ASSERT_EQ(p.glass.hidden_in(first), is_hidden ? 1u : GlassBodies::kNone)
+            << round << " " << farthest;
+        ASSERT_EQ(p.glass.hidden_in(1), GlassBodies::kNone) << round;
+        (is_hidden ? hidden : seen) += 1;
+    }
+    EXPECT_GT(hidden, 100);
+    EXPECT_GT(seen, 100);
+}
+
+TEST(GlassBodies, OneCornerThatSticksOutIsSeen) {
+    // A box whose corners are 1 m from its centre, which is moved by 0.1 m toward one of them: that
+    // is 1.1 m from the ball's centre, its neighbours sqrt(1 + 0.1^2 + 0.1) = 1.054 m.
+    for (unsigned corner = 0; corner < 16; ++corner) {
+        Vec4 toward;
+        for (int axis = 0; axis < 4; ++axis) toward[axis] = corner >> axis & 1 ? 0.5 : -0.5;
+        for (const double radius : {1.08, 1.101}) {
+            TestScene scene;
+            scene.materials[0].kind = MaterialKind::kGlass;
+            scene.add(Hyperbox{Vec4::Ones()}, 0.1 * toward);
+            scene.add(Hypersphere{radius}, Vec4::Zero());
+            const Placed p(scene);
+            EXPECT_EQ(p.glass.hidden_in(0), radius > 1.1 ? 1u : GlassBodies::kNone) << corner;
+        }
+    }
+}
+
+TEST(GlassBodies, OfParallelPlanesTheLowerOneIsHidden) {
+    for (const double offset : {-1.0, 0.0, 1.0}) {
+        TestScene scene;
+        scene.materials[0].kind = MaterialKind::kGlass;
+        scene.add(Hyperplane{Vec4::UnitY(), 0}, Vec4::Zero());
+        scene.add(Hyperplane{Vec4::UnitY(), offset}, Vec4::Zero());
+        scene.add(Hypersphere{0.3}, {0, 0, 0, 1});
+        const Placed p(scene);
+        EXPECT_EQ(p.glass.hidden_in(0), offset < 0 ? GlassBodies::kNone : 1u) << offset;
+        EXPECT_EQ(p.glass.hidden_in(2), GlassBodies::kNone);
     }
 }
 

@@ -222,7 +222,7 @@ TEST(TileSource, ListsLoseNoBody) {
                                 uniform(random, tile->y0, tile->y1));
                 const Vec3 view = camera.ray_direction(film);
                 const Ray ray =
-                    camera.to_world(ViewRay{Vec3::Zero(), view}, scene.settings.max_distance);
+                    camera.to_world(ViewRay{Vec3::Zero(), view}, scene.settings.ray_limit());
                 const Hit best = nearest_of_all(placed, ray, scene.settings, stats);
                 const Hit hit = list.nearest(placed, view, ray, scene.settings, stats);
                 hit_count += hit ? 1 : 0;

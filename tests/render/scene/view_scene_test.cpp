@@ -13,7 +13,7 @@ namespace {
 Hit nearest_of_all(const PlacedBodies& placed, const Camera& camera, const ViewRay& ray,
                    const Settings& settings) {
     FrameStats stats;
-    return nearest_of_all(placed, camera.to_world(ray, settings.max_distance), settings, stats);
+    return nearest_of_all(placed, camera.to_world(ray, settings.ray_limit()), settings, stats);
 }
 
 /// Rays from a lens of radius `aperture` through the film, within `range` along the fourth axis;

@@ -240,6 +240,7 @@ const std::vector<Broken>& broken_scenes() {
          {"opposite to the last key's"}},
         {"[render]\nfilter = \"gausian\"\n", "2:10", {"did you mean \"gaussian\"?"}},
         {"[render]\nfilter_width = 0\n", "2:16", {"filter_width = 0"}},
+        {"[render]\nmax_distance = -1\n", "2:16", {"max_distance = -1"}},
         {"[render]\nnoise_target = -1\n", "2:16", {"noise_target = -1"}},
         {"[render]\ncompression = \"dwaa\"\n", "2:15", {"\"zip\"", "\"piz\""}},
         {"[render]\nmax_samples = 0\n", "2:15", {"1 to 1048576"}},

@@ -8,6 +8,7 @@
 #include "scenes/film/film.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/plan/plan.hpp"
+#include "scenes/plan/plan_picture.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 
 // That what the plan says is what happens: counted in small frames and in worlds that step.
@@ -116,6 +117,45 @@ TEST(PlanOfAPicture, SaysWhetherOneOfManyLampsIsAsked) {
     EXPECT_TRUE(asks_one(0, 5, "\"path\""));
 }
 
+TEST(PlanOfAPicture, WarnsOfGlassInsideLaterGlass) {
+    const auto warnings_of = [](const std::string& bodies) {
+        const SceneFile file(kMaterials + bodies);
+        const Scene scene = load_scene(file.path(), {});
+        Plan plan = make_plan(scene, 1);
+        EXPECT_TRUE(plan.warnings.empty());
+        warn_of_hidden_glass(scene, plan);
+        return plan.warnings;
+    };
+    const std::string small =
+        "[[body]]\nname = \"small\"\nshape = \"hyperbox\"\nsize = [1, 1, 1, 0.5]\n";
+    const std::string lattice =
+        "[[lattice]]\nname = \"bubbles\"\nshape = \"hypersphere\"\nradius = 0.1\n"
+        "count = [3, 1, 1, 1]\nspacing = [0.3, 1, 1, 1]\n";
+    const std::string glass = "material = \"glass\"\n",
+                      large = ball(0, "name = \"large\"\n" + glass);
+    const auto found = warnings_of(small + glass + large);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0],
+              "\"small\" lies wholly inside the glass \"large\", which is declared later and rules "
+              "there: it is not seen");
+    // The other way round, of another material, invisible, sticking out.
+    EXPECT_TRUE(warnings_of(large + small + glass).empty());
+    EXPECT_TRUE(warnings_of(small + large).empty());
+    EXPECT_TRUE(warnings_of(small + glass + ball(0)).empty());
+    EXPECT_TRUE(warnings_of(small + glass + "visible = false\n" + large).empty());
+    EXPECT_TRUE(warnings_of(small + glass + "position = [0.3, 0, 0, 0]\n" + large).empty());
+    // All lattices come after all bodies.
+    EXPECT_TRUE(warnings_of(lattice + glass + large).empty());
+    const auto in_lattice = warnings_of(lattice + glass +
+                                        "[[lattice]]\nshape = \"hypersphere\"\n"
+                                        "name = \"drops\"\nradius = 1\ncount = [1, 1, 1, 1]\n"
+                                        "spacing = [1, 1, 1, 1]\n" +
+                                        glass);
+    ASSERT_EQ(in_lattice.size(), 1u);
+    EXPECT_EQ(in_lattice[0].find("a body of \"bubbles\" lies wholly inside the glass \"drops\""),
+              0u);
+}
+
 TEST(PlanOfAPicture, CountsTheViewRays) {
     for (const char* channels : {"[\"color\"]", "[\"color\", \"id\"]", "[\"albedo\", \"depth\"]"})
         for (const char* samples : {"1", "2", "20"}) {
@@ -164,6 +204,16 @@ TEST(PlanOfAPicture, SaysWhetherNoiseMoves) {
         EXPECT_NE(preview_of(load_text(text, sets)), preview_of(load_text(text, other)));
     }
     EXPECT_FALSE(needs(load_text(light + ball(0), {"render.samples=1"}), "moving noise"));
+}
+
+TEST(PlanOfAPicture, SaysWhereRaysEnd) {
+    // The default camera is some 8 m from the ball.
+    const std::string mirror = kMaterials + ball(0, "material = \"mirror\"");
+    const Frame without(mirror), near(mirror, {"render.max_distance=5"});
+    EXPECT_FALSE(needs(without.scene, "distance limit"));
+    EXPECT_GT(without.stats.bounce_rays, 0u);
+    EXPECT_TRUE(needs(near.scene, "distance limit"));
+    EXPECT_EQ(near.stats.bounce_rays, 0u);
 }
 
 TEST(PlanOfAPicture, SaysWhereViewRaysStart) {
