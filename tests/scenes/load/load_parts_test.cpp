@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <charconv>
 #include <cmath>
 #include <random>
 
+#include "scenes/load/effective.hpp"
 #include "scenes/load/hash.hpp"
 #include "scenes/load/lattice.hpp"
 #include "scenes/load/nearest_name.hpp"
+#include "tests/scenes/load/load_scene_text.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -87,6 +91,26 @@ TEST(LatticePoint, DependsOnSeedIndexAndAxisOnly) {
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
     x ^= x >> 31;
     EXPECT_EQ(second, std::ldexp(static_cast<double>(x >> 11), -53));
+}
+
+TEST(TomlText, RealsReadBackAsTheSameBits) {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 100'000; ++i) {
+        const auto value = std::bit_cast<double>(random());
+        if (!std::isfinite(value)) continue;
+        const std::string text = toml_text(value);
+        double back = 0;
+        std::from_chars(text.data(), text.data() + text.size(), back);
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(value)) << text;
+    }
+    // And through the parser, within the range that scenes may use.
+    for (int i = 0; i < 300; ++i) {
+        const double value =
+            std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 80) - 83);
+        const Scene scene =
+            load_text("[scene]", {"render.max_distance=" + toml_text(value + 1e-15)});
+        ASSERT_EQ(scene.render.max_distance, value + 1e-15);
+    }
 }
 
 }  // namespace

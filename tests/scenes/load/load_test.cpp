@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <charconv>
-#include <random>
-
 #include "scenes/load/effective.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 
@@ -436,26 +433,6 @@ TEST(FirstDifference, NamesKeyAndValues) {
               "physics.seed: 9223372036854775807 there, 9 here");
     EXPECT_EQ(motion({shown, longer, "body.floor.visible=false", "body.body-1.friction=0.7"}),
               "body 1 \"body-1\".friction: 0.1 there, 0.7 here");
-}
-
-TEST(TomlText, RealsReadBackAsTheSameBits) {
-    std::mt19937_64 random(1);
-    for (int i = 0; i < 100'000; ++i) {
-        const auto value = std::bit_cast<double>(random());
-        if (!std::isfinite(value)) continue;
-        const std::string text = toml_text(value);
-        double back = 0;
-        std::from_chars(text.data(), text.data() + text.size(), back);
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(back), std::bit_cast<std::uint64_t>(value)) << text;
-    }
-    // And through the parser, within the range that scenes may use.
-    for (int i = 0; i < 300; ++i) {
-        const double value =
-            std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 80) - 83);
-        const Scene scene =
-            load_text("[scene]", {"render.max_distance=" + toml_text(value + 1e-15)});
-        ASSERT_EQ(scene.render.max_distance, value + 1e-15);
-    }
 }
 
 }  // namespace
