@@ -161,13 +161,13 @@ class Light {
     /// @param film      where on the film [pixels]
     /// @param sampler   of the light's random numbers
     Color along(const Vec2& film, const Sampler& sampler) {
-        const Instant& instant = frame_.opening();
-        const Ray ray = instant.camera.to_world(instant.rays.middle({0, 0, 0}, film), kMiss);
+        const Interval& opening = frame_.opening();
+        const Ray ray = frame_.camera().to_world(frame_.rays().middle({0, 0, 0}, film), kMiss);
         const Hit hit = rays_.nearest(ray, stats_);
-        const auto surface = hit ? std::optional(instant.shading.surface(hit, ray)) : std::nullopt;
+        const auto surface = hit ? std::optional(opening.shading.surface(hit, ray)) : std::nullopt;
         const ViewSample from = {surface ? &*surface : nullptr, ray, sampler};
         Color color;
-        instant.integrator->radiance({&from, 1}, {&color, 1}, stats_);
+        opening.integrator->radiance({&from, 1}, {&color, 1}, stats_);
         return color;
     }
 

@@ -205,7 +205,7 @@ double embree_rate(const FrameScene& scene) {
     rtcAttachGeometry(spheres, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(spheres);
-    const std::vector<ViewRay> rays = view_rays(scene.opening().camera);
+    const std::vector<ViewRay> rays = view_rays(scene.camera());
     const Time time = time_of([&] {
         RayContext context = ray_context();
         for (const ViewRay& r : rays) {
@@ -234,9 +234,9 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
         for (int y = window.y0; y < window.y1; ++y)
             for (int x = window.x0; x < window.x1; ++x) {
                 const Settings& settings = scene.picture().settings;
-                const Vec3 view = scene.opening().camera.ray_direction({x + 0.5, y + 0.5});
-                const Ray ray = scene.opening().camera.to_world(ViewRay{Vec3::Zero(), view},
-                                                                settings.ray_limit());
+                const Vec3 view = scene.camera().ray_direction({x + 0.5, y + 0.5});
+                const Ray ray =
+                    scene.camera().to_world(ViewRay{Vec3::Zero(), view}, settings.ray_limit());
                 const Hit hit = list.nearest(scene.opening().placed, view, ray, settings, m.stats);
                 if (hit) surfaces.push_back(scene.opening().shading.surface(hit, ray));
             }
@@ -256,9 +256,8 @@ Measured through_lists(const FrameScene& scene, std::vector<Surface>& surfaces) 
 /// The same rays by the hierarchy for rays that do not start at one point.
 Measured through_view_scene(const FrameScene& scene, std::size_t& hit_count) {
     Measured m{{}, double{kSide} * kSide, {}};
-    const ViewScene view(scene.opening().placed, scene.opening().camera, scene.picture().settings,
-                         {}, 0);
-    const std::vector<ViewRay> rays = view_rays(scene.opening().camera);
+    const ViewScene view(scene.opening().placed, scene.camera(), scene.picture().settings, {}, 0);
+    const std::vector<ViewRay> rays = view_rays(scene.camera());
     std::vector<Hit> hits(rays.size());
     m.time = time_of([&] {
         m.stats = {};
@@ -339,9 +338,9 @@ void measure(int count, Intersector intersector, Rates& rates) {
 
     const SunDisc sun = sun_disc(cloud.lights.suns[0]);
     std::erase_if(lit, [&](const Surface& s) { return s.normal.dot(sun.toward) <= 0; });
-    const Instant& instant = scene.opening();
-    const RayScene rays(instant.placed, instant.tree, picture.settings);
-    const Shadows shadows(instant.placed, instant.tree);
+    const Interval& opening = scene.opening();
+    const RayScene rays(opening.placed, opening.tree, picture.settings);
+    const Shadows shadows(opening.placed, opening.tree);
     const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
         return rays.is_blocked({s.point, sun.toward, s.body}, stats);
     });
@@ -358,8 +357,7 @@ void measure(int count, Intersector intersector, Rates& rates) {
     report.row("bounce", bounced(rays, lit));
     report.build("build_tree_ms", time_of([&] { BodyTree(scene.opening().placed); }));
     report.build("build_view_scene_ms", time_of([&] {
-                     ViewScene(scene.opening().placed, scene.opening().camera, picture.settings, {},
-                               0);
+                     ViewScene(scene.opening().placed, scene.camera(), picture.settings, {}, 0);
                  }));
     report.growth();
 }

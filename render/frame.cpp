@@ -40,7 +40,7 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const Crop window = settings.window();
     const FrameScene scene(picture, settings.channels.color || !preview.empty());
     TileSource source(scene.slice(), window, settings.tile);
-    ExrWriter image(exr, settings, window, info, picture.camera, scene.opening().camera);
+    ExrWriter image(exr, settings, window, info, picture.camera, scene.camera());
     std::optional<Preview> small;
     if (!preview.empty()) small.emplace(window, settings.exposure);
     FrameStats stats;

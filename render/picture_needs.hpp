@@ -15,9 +15,12 @@ struct PictureNeeds {
     bool lens;          ///< view rays start anywhere in its disc
     bool slices;        ///< several, side by side
     bool thick_slice;   ///< view rays start anywhere in it
+    bool moving;        ///< the shutter is open while something moves
     bool moving_noise;  ///< something is random, and differs from frame to frame
 
-    bool any_rays_off_slice() const { return shadow_rays || bounce_rays; }
+    /// Rays leave the slice, or view rays have slices of their own, as bodies are not where they
+    /// were at the opening.
+    bool tree() const { return shadow_rays || bounce_rays || moving; }
 };
 
 PictureNeeds needs_of(const Picture& picture);

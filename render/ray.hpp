@@ -18,6 +18,7 @@ struct Ray {
     /// so that no origin needs to be moved off its surface.
     std::uint32_t on = kNoBody;
     double limit = kMiss;  ///< what is farther than this does not count [m]
+    double time = 0;       ///< since the shutter opened [s]
 
     Vec4 at(double distance) const { return origin + distance * direction; }
 };

@@ -129,12 +129,14 @@ Rotor to_rotor(const Mat4& rotation) {
 
 Bivector rotate(const Rotor& r, const Bivector& b) { return (r * Rotor{0, b, 0} * reverse(r)).b; }
 
+Bivector log_of_rotation(const Rotor& r) {
+    // With quaternion angles a and b, s = cos((a + b)/2) cos((a - b)/2); those of -r are pi - a and
+    // pi - b. So the shorter way, the one with a + b <= pi, is the one with s >= 0.
+    return log(first_nonzero_is_negative(r) ? -r : r);
+}
+
 Rotor interpolate(const Rotor& r0, const Rotor& r1, double t) {
-    Rotor turn = r1 * reverse(r0);
-    // With quaternion angles a and b, s = cos((a + b)/2) cos((a - b)/2); those of -turn are pi - a
-    // and pi - b. So the shorter way, the one with a + b <= pi, is the one with s >= 0.
-    if (first_nonzero_is_negative(turn)) turn = -turn;
-    return exp(t * log(turn)) * r0;
+    return exp(t * log_of_rotation(r1 * reverse(r0))) * r0;
 }
 
 }  // namespace tesserae

@@ -36,6 +36,11 @@ Rotor exp(const Bivector& b);
 /// lie in [0, pi]. Where an angle is pi its direction is free: a fixed one is taken.
 Bivector log(const Rotor& r);
 
+/// The log of r or -r, the same rotation: of the shorter way there. At half turns, where two ways
+/// are equally short, of the one whose first component of s, xy, ..., zw, p beyond kRotorNoise is
+/// positive.
+Bivector log_of_rotation(const Rotor& r);
+
 /// The unit rotor nearest to a drifted one, on both conditions (rescaling alone mends only one).
 /// Needs a rotor that is not a null element: s, B, p with |s^2 + |B|^2 + p^2| > |2 s p - B ^ B|.
 Rotor projected_to_spin4(const Rotor& r);
@@ -64,9 +69,8 @@ inline Vec4 rotate(const Rotor& r, const Vec4& v) { return to_matrix(r) * v; }
 /// R B R~: what the rotation does to planes.
 Bivector rotate(const Rotor& r, const Bivector& b);
 
-/// From r0 (t = 0) to r1 (t = 1) at constant angular velocity the shortest way. At half turns,
-/// where two ways are equally short, the one for which the first of s, xy, ..., zw, p of
-/// r1 reverse(r0) that is beyond kRotorNoise is positive.
+/// From r0 (t = 0) to r1 (t = 1) at constant angular velocity the shortest way, that of
+/// log_of_rotation(r1 reverse(r0)).
 Rotor interpolate(const Rotor& r0, const Rotor& r1, double t);
 
 }  // namespace tesserae

@@ -18,9 +18,9 @@ struct SliceRange {
 /// A ray that stays in a hyperplane parallel to the camera's. In camera coordinates it has three
 /// directions only: what film lists and Embree work with.
 struct ViewRay {
-    Vec3 origin = Vec3::Zero();  ///< [m]
-    Vec3 direction;              ///< unit
-    double fourth = 0;           ///< where it is along the camera's fourth axis [m]
+    Vec3 origin = Vec3::Zero();      ///< [m]
+    Vec3 direction = Vec3::UnitZ();  ///< unit
+    double fourth = 0;               ///< where it is along the camera's fourth axis [m]
 };
 
 /// A pinhole in 4D. It sees the 3D hyperplane through its origin that is orthogonal to `fourth`.

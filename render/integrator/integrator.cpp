@@ -35,7 +35,8 @@ LightIntegrator::LightIntegrator(const Picture& picture, const PlacedBodies& pla
                                  const BodyTree& tree, const LightSet& lights,
                                  const Shading& shading)
     : settings_(picture.settings), lights_(lights), shading_(shading), glass_(picture, placed) {
-    if (needs_of(picture).bounce_rays) scene_.emplace(placed, tree, picture.settings);
+    const PictureNeeds needs = needs_of(picture);
+    if (needs.bounce_rays || needs.moving) scene_.emplace(placed, tree, picture.settings);
 }
 
 void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const {
@@ -87,7 +88,8 @@ std::uint32_t LightIntegrator::first_group(int scattered, std::size_t lamps) con
 }
 
 void LightIntegrator::leave(LightPath& path, const Vec4& direction, double density) const {
-    path.ray = {path.surface->point, direction, path.surface->body, settings_.ray_limit()};
+    path.ray = {path.surface->point, direction, path.surface->body, settings_.ray_limit(),
+                path.ray.time};
     path.density = density;
     path.normal = path.surface->normal;
     path.is_view = false;
@@ -100,7 +102,8 @@ void LightIntegrator::scatter_specular(LightPath& path, double choice) const {
     Color weight = s.albedo;
     leave(path, reflected(direction, facing), 0);
     if (s.material->kind == MaterialKind::kGlass) {
-        const std::uint32_t beyond = path.is_exit ? glass_.medium_beyond(s.body, s.point) : s.body;
+        const std::uint32_t beyond =
+            path.is_exit ? glass_.medium_beyond(s.body, s.point, s.time) : s.body;
         const double ratio = glass_.refractive_index(path.medium) / glass_.refractive_index(beyond);
         const double cosine = std::clamp(-direction.dot(facing), 0.0, 1.0);
         const auto across = refracted(direction, facing, ratio);
@@ -110,7 +113,7 @@ void LightIntegrator::scatter_specular(LightPath& path, double choice) const {
             weight = radiance_scale(ratio) * s.albedo;
         }
         if (!path.is_in_glass())
-            path.ray.origin = glass_.start_outside(s.body, s.point, path.ray.direction);
+            path.ray.origin = glass_.start_outside(s.body, s.point, path.ray.direction, s.time);
     }
     path.throughput *= weight;
 }

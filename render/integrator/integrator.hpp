@@ -81,8 +81,10 @@ class LightIntegrator {
     virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                           FrameStats& stats) const = 0;
 
-    /// What view rays begin in and go into, for who traces them.
+    /// What view rays begin in and go into, for who traces them; and, while something moves, what
+    /// they meet.
     const GlassBodies& glass() const { return glass_; }
+    const RayScene& scene() const { return *scene_; }
 
   protected:
     /// Adds the path of a view ray, arrived where that arrives.
@@ -111,7 +113,7 @@ class LightIntegrator {
     const LightSet& lights_;
     const Shading& shading_;
     GlassBodies glass_;
-    std::optional<RayScene> scene_;  ///< none where view rays are all that there is
+    std::optional<RayScene> scene_;  ///< none where view rays of the slice are all there is
 };
 
 /// Direct light without noise: the first surface that is no mirror or glass ends a path, with

@@ -77,7 +77,7 @@ Color PathIntegrator::light_of_points(const Surface& s, const Bsdf& bsdf, FrameS
     Color sum = Color::Zero();
     const auto add_light = [&](const LightDisc& disc, const Color& irradiance) {
         if (!(irradiance > 0).any()) return;
-        const Ray ray = {s.point, disc.toward, s.body, disc.limit};
+        const Ray ray = {s.point, disc.toward, s.body, disc.limit, s.time};
         if (lights_.first_sphere(ray).sphere == LightSet::kNone && is_lit(ray, stats))
             sum += bsdf.value(disc.toward) * irradiance;
     };
@@ -123,7 +123,7 @@ Color PathIntegrator::light_of_disc(const Surface& s, const Bsdf& bsdf, const Li
     const double cosine = s.normal.dot(in);
     if (!(cosine > 0)) return Color::Zero();
     // A nearer light may stand before this one.
-    Ray ray = {s.point, in, s.body};
+    Ray ray = {s.point, in, s.body, kMiss, s.time};
     const LightSet::Seen seen = lights_.first_sphere(ray);
     ray.limit = seen.distance;
     if (seen.sphere != source || !is_lit(ray, stats)) return Color::Zero();
@@ -136,10 +136,10 @@ Color PathIntegrator::light_of_body(const Surface& s, const Bsdf& bsdf, const La
                                     double chance, const Uniform3& u, FrameStats& stats) const {
     if (s.body == lamp.body) return Color::Zero();
     const PlacedBody& body = placed_.bodies[lamp.body];
-    const auto toward = sample_toward(*body.shape, placed_.point_to_body(body, s.point), u);
+    const auto toward = sample_toward(*body.shape, placed_.point_to_body(body, s.point, s.time), u);
     if (!toward) return Color::Zero();
-    Ray ray = {s.point, placed_.direction_to_world(body, toward->direction), s.body,
-               settings_.ray_limit()};
+    Ray ray = {s.point, placed_.direction_to_world(body, toward->direction, s.time), s.body,
+               settings_.ray_limit(), s.time};
     const double cosine = s.normal.dot(ray.direction);
     if (!(cosine > 0)) return Color::Zero();
     const double distance = hit_distance(placed_, lamp.body, ray, settings_, stats);
@@ -167,8 +167,8 @@ double PathIntegrator::lamp_density(const LightPath& path) const {
     if (lamp == Lamps::kNone) return 0;
     const PlacedBody& body = placed_.bodies[path.surface->body];
     return lamps_.chance_of(lamp, origin, path.normal) *
-           density_toward(*body.shape, placed_.point_to_body(body, origin),
-                          placed_.direction_to_body(body, path.ray.direction));
+           density_toward(*body.shape, placed_.point_to_body(body, origin, path.ray.time),
+                          placed_.direction_to_body(body, path.ray.direction, path.ray.time));
 }
 
 bool PathIntegrator::is_lit(const Ray& toward_light, FrameStats& stats) const {

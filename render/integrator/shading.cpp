@@ -38,12 +38,18 @@ Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyT
 Surface Shading::surface(const Hit& hit, const Ray& ray) const {
     const PlacedBody& body = placed_.bodies[hit.body];
     const Vec4 point = ray.at(hit.distance);
-    const Vec4 local = placed_.point_to_body(body, point);
+    const Vec4 local = placed_.point_to_body(body, point, ray.time);
     const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
     const std::uint32_t type = picture_.bodies.type[body.id];
     const Material& material = picture_.materials[picture_.appearance[type].material];
-    Surface s = {hit.distance, hit.body,           point, placed_.direction_to_world(body, out), {},
-                 &material,    rough_.of(material)};
+    Surface s = {hit.distance,
+                 hit.body,
+                 point,
+                 placed_.direction_to_world(body, out, ray.time),
+                 {},
+                 &material,
+                 rough_.of(material),
+                 ray.time};
     s.albedo = material.pattern == Pattern::kNone
                    ? material.albedo
                    : albedo_at(material, local - pattern_origin(*body.shape) -
@@ -70,7 +76,7 @@ Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) co
 Color Shading::reflected(const Surface& s, const Bsdf& bsdf, const LightDisc& light,
                          const Color& irradiance, FrameStats& stats) const {
     if (!(irradiance > 0).any()) return Color::Zero();
-    const double visible = shadows_->visibility(light, s.point, s.body, stats);
+    const double visible = shadows_->visibility(light, s.point, s.body, stats, s.time);
     return visible * bsdf.value(light.toward) * irradiance;
 }
 

@@ -17,9 +17,9 @@ double rim_sine(const PlacedBodies& placed, std::uint32_t index, const Ray& ray,
     const PlacedBody& body = placed.bodies[index];
     return std::visit(
         [&](const auto& shape) {
-            const Rim least =
-                rim(shape, placed.point_to_body(body, ray.origin),
-                    placed.direction_to_body(body, ray.direction), {low, high, ray.limit});
+            const Rim least = rim(shape, placed.point_to_body(body, ray.origin, ray.time),
+                                  placed.direction_to_body(body, ray.direction, ray.time),
+                                  {low, high, ray.limit});
             stats.distance_evaluations += static_cast<std::uint64_t>(least.steps);
             return least.sine;
         },
@@ -52,9 +52,9 @@ bool Shadows::is_hidden(const Ray& ray, FrameStats& stats) const {
 }
 
 double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint32_t on,
-                           FrameStats& stats) const {
+                           FrameStats& stats, double time) const {
     ++stats.shadow_rays;
-    const Ray ray = {point, light.toward, on, std::min(light.limit, limit_)};
+    const Ray ray = {point, light.toward, on, std::min(light.limit, limit_), time};
     if (light.angle == 0) return is_hidden(ray, stats) ? 0 : 1;
 
     // The cone that can still matter narrows to the nearest rim found.

@@ -34,7 +34,7 @@ class Shadows {
     /// @param on      the body that it lies on: left out, as a convex body never shades its own lit
     ///                side
     double visibility(const LightDisc& light, const Vec4& point, std::uint32_t on,
-                      FrameStats& stats) const;
+                      FrameStats& stats, double time = 0) const;
 
   private:
     bool is_hidden(const Ray& ray, FrameStats& stats) const;

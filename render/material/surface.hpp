@@ -18,6 +18,7 @@ struct Surface {
     Color albedo;
     const Material* material;
     const RoughReflection* rough = nullptr;  ///< of a rough material
+    double time = 0;                         ///< of the ray [s]
 };
 
 }  // namespace tesserae::render

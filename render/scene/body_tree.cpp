@@ -47,11 +47,13 @@ struct Member {
 };
 
 Box box_of(const PlacedBodies& placed, const PlacedBody& body) {
-    Mat4 rotation = Mat4::Identity();
-    if (body.turn != PlacedBody::kNotTurned) rotation = placed.turns[body.turn].transpose();
-    const Vec4 half =
-        std::visit([&](const auto& s) { return half_extents(s, rotation); }, *body.shape).array() +
-        kWiden * (body.centre.lpNorm<1>() + body.radius);
+    Vec4 half = Vec4::Constant(body.radius);
+    if (!body.moves()) {
+        Mat4 rotation = Mat4::Identity();
+        if (body.turn != PlacedBody::kNotTurned) rotation = placed.turns[body.turn].transpose();
+        half = std::visit([&](const auto& s) { return half_extents(s, rotation); }, *body.shape);
+    }
+    half.array() += kWiden * (body.centre.lpNorm<1>() + body.radius);
     Box box;
     box.low = (body.centre - half).cast<float>();
     box.high = (body.centre + half).cast<float>();

@@ -15,17 +15,19 @@ const Material& material_of(const Picture& picture, BodyId id) {
     return picture.materials[picture.appearance[picture.bodies.type[id]].material];
 }
 
-double distance_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point) {
+double distance_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point,
+                   double time = 0) {
     return std::visit(
-        [&](const auto& s) { return signed_distance(s, placed.point_to_body(body, point)); },
+        [&](const auto& s) { return signed_distance(s, placed.point_to_body(body, point, time)); },
         *body.shape);
 }
 
 /// Out of the body, unit, world axes.
-Vec4 normal_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point) {
-    const Vec4 local = placed.point_to_body(body, point);
+Vec4 normal_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point,
+               double time = 0) {
+    const Vec4 local = placed.point_to_body(body, point, time);
     const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
-    return placed.direction_to_world(body, out);
+    return placed.direction_to_world(body, out, time);
 }
 
 /// A point of a bounded body that is farthest along a direction.
@@ -79,6 +81,12 @@ GlassBodies::GlassBodies(const Picture& picture, const PlacedBodies& placed)
             neighbours_.emplace_back();
         }
     if (!neighbours_.empty()) find_neighbours();
+}
+
+/// How far a point is from a body, wherever that is: no more than this.
+double GlassBodies::distance_from(const PlacedBody& body, const Vec4& point) const {
+    return body.moves() ? (point - body.centre).norm() - body.radius
+                        : distance_of(placed_, body, point);
 }
 
 bool GlassBodies::reach_each_other(std::uint32_t a, std::uint32_t b) const {
@@ -139,15 +147,14 @@ double GlassBodies::refractive_index(std::uint32_t medium) const {
 std::vector<std::uint32_t> GlassBodies::about(const Vec4& point, double reach) const {
     std::vector<std::uint32_t> bodies;
     for (auto i = static_cast<std::uint32_t>(slot_.size()); i-- > 0;)
-        if (is_glass(i) && distance_of(placed_, placed_.bodies[i], point) <= reach)
-            bodies.push_back(i);
+        if (is_glass(i) && distance_from(placed_.bodies[i], point) <= reach) bodies.push_back(i);
     return bodies;
 }
 
-std::uint32_t GlassBodies::medium_at(const Vec4& point,
-                                     std::span<const std::uint32_t> bodies) const {
+std::uint32_t GlassBodies::medium_at(const Vec4& point, std::span<const std::uint32_t> bodies,
+                                     double time) const {
     const auto ruler = std::find_if(bodies.begin(), bodies.end(), [&](std::uint32_t body) {
-        return depth(body, point) > kInside;
+        return depth(body, point, time) > kInside;
     });
     return ruler == bodies.end() ? kNone : *ruler;
 }
@@ -156,8 +163,8 @@ GlassBodies::Event GlassBodies::next(std::uint32_t medium, Ray ray, FrameStats& 
     const PlacedBody& glass = placed_.bodies[medium];
     const double exit = std::visit(
         [&](const auto& s) {
-            return ray_exit(s, placed_.point_to_body(glass, ray.origin),
-                            placed_.direction_to_body(glass, ray.direction));
+            return ray_exit(s, placed_.point_to_body(glass, ray.origin, ray.time),
+                            placed_.direction_to_body(glass, ray.direction, ray.time));
         },
         *glass.shape);
     Hit hit;
@@ -180,8 +187,8 @@ double GlassBodies::scale(std::uint32_t body, const Vec4& point) const {
 }
 
 /// How deep a point lies in a body, in parts of the lengths involved.
-double GlassBodies::depth(std::uint32_t body, const Vec4& point) const {
-    return -distance_of(placed_, placed_.bodies[body], point) / scale(body, point);
+double GlassBodies::depth(std::uint32_t body, const Vec4& point, double time) const {
+    return -distance_of(placed_, placed_.bodies[body], point, time) / scale(body, point);
 }
 
 Hit GlassBodies::ruling(Hit hit, const Ray& ray) const {
@@ -189,25 +196,27 @@ Hit GlassBodies::ruling(Hit hit, const Ray& ray) const {
     const auto& others = neighbours_[slot_[hit.body]];
     const Vec4 point = ray.at(hit.distance);
     for (auto other = others.rbegin(); other != others.rend() && *other > hit.body; ++other)
-        if (*other != ray.on && is_glass(*other) && std::abs(depth(*other, point)) <= kInside &&
-            normal_of(placed_, placed_.bodies[*other], point).dot(ray.direction) < 0)
+        if (*other != ray.on && is_glass(*other) &&
+            std::abs(depth(*other, point, ray.time)) <= kInside &&
+            normal_of(placed_, placed_.bodies[*other], point, ray.time).dot(ray.direction) < 0)
             return {hit.distance, *other};
     return hit;
 }
 
-Vec4 GlassBodies::start_outside(std::uint32_t body, Vec4 point, const Vec4& direction) const {
+Vec4 GlassBodies::start_outside(std::uint32_t body, Vec4 point, const Vec4& direction,
+                                double time) const {
     for (const std::uint32_t other : neighbours_[slot_[body]]) {
-        if (!is_glass(other) || std::abs(depth(other, point)) > kInside) continue;
-        const Vec4 out = normal_of(placed_, placed_.bodies[other], point);
+        if (!is_glass(other) || std::abs(depth(other, point, time)) > kInside) continue;
+        const Vec4 out = normal_of(placed_, placed_.bodies[other], point, time);
         if (out.dot(direction) > 0) point += 2 * kInside * scale(other, point) * out;
     }
     return point;
 }
 
-std::uint32_t GlassBodies::medium_beyond(std::uint32_t body, const Vec4& point) const {
+std::uint32_t GlassBodies::medium_beyond(std::uint32_t body, const Vec4& point, double time) const {
     const auto& others = neighbours_[slot_[body]];
     const auto ruler = std::find_if(others.rbegin(), others.rend(), [&](std::uint32_t other) {
-        return is_glass(other) && depth(other, point) > kInside;
+        return is_glass(other) && depth(other, point, time) > kInside;
     });
     return ruler == others.rend() ? kNone : *ruler;
 }

@@ -30,7 +30,8 @@ class GlassBodies {
     std::vector<std::uint32_t> about(const Vec4& point, double reach) const;
     /// The medium at a point: the first of the bodies that holds it.
     /// @param bodies   of glass, last one first: all that can hold it
-    std::uint32_t medium_at(const Vec4& point, std::span<const std::uint32_t> bodies) const;
+    std::uint32_t medium_at(const Vec4& point, std::span<const std::uint32_t> bodies,
+                            double time = 0) const;
 
     struct Event {
         Hit hit;
@@ -48,10 +49,11 @@ class GlassBodies {
 
     /// Where a ray that leaves a glass body outward begins, so that it is clear of others whose
     /// surfaces lie in the same place: a ray is `on` one body only. Else the point itself.
-    Vec4 start_outside(std::uint32_t body, Vec4 point, const Vec4& direction) const;
+    Vec4 start_outside(std::uint32_t body, Vec4 point, const Vec4& direction,
+                       double time = 0) const;
 
     /// The medium just outside a glass body, at a point of its surface.
-    std::uint32_t medium_beyond(std::uint32_t body, const Vec4& point) const;
+    std::uint32_t medium_beyond(std::uint32_t body, const Vec4& point, double time = 0) const;
 
     /// The last of the bodies of glass that come after a glass body and hold all of it, so that it
     /// is not seen; kNone if there is none.
@@ -59,7 +61,8 @@ class GlassBodies {
 
   private:
     double scale(std::uint32_t body, const Vec4& point) const;
-    double depth(std::uint32_t body, const Vec4& point) const;
+    double depth(std::uint32_t body, const Vec4& point, double time) const;
+    double distance_from(const PlacedBody& body, const Vec4& point) const;
     bool reach_each_other(std::uint32_t a, std::uint32_t b) const;
     void find_neighbours();
 

@@ -76,6 +76,10 @@ double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Ray& 
             },
             *body.shape);
     };
+    if (body.moves()) {
+        const Pose pose = placed.pose(body, ray.time);
+        return in_frame(pose.turn * (ray.origin - pose.centre), pose.turn * ray.direction);
+    }
     // Two calls: a choice of vectors would be copied by halves, and reading them back stalls.
     if (body.turn == PlacedBody::kNotTurned)
         return in_frame(ray.origin - body.centre, ray.direction);

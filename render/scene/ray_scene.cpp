@@ -13,7 +13,9 @@ RayScene::RayScene(const PlacedBodies& placed, const BodyTree& tree, const Setti
     for (const PlacedBody& body : placed.bodies) {
         const auto* ball = std::get_if<Hypersphere>(body.shape);
         const auto* box = std::get_if<Hyperbox>(body.shape);
-        if (is_closed_form && ball && body.turn == PlacedBody::kNotTurned) {
+        if (body.moves()) {
+            slots_.push_back({kOther, static_cast<std::uint32_t>(slots_.size())});
+        } else if (is_closed_form && ball && body.turn == PlacedBody::kNotTurned) {
             slots_.push_back({kBall, static_cast<std::uint32_t>(balls_.size())});
             balls_.push_back({body.centre, *ball});
         } else if (is_closed_form && box) {

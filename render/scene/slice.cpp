@@ -14,12 +14,12 @@ namespace {
 /// cancellation, and this covers the square root of the rounding unit tenfold.
 constexpr double kSlack = 1e-7;
 
-struct Interval {
+struct Extent {
     double low, high;
 };
 
 /// Tangents of the two directions from the origin that touch a disc at (offset, z), radius < z.
-Interval tangents(double offset, double z, double radius) {
+Extent tangents(double offset, double z, double radius) {
     const double middle = std::atan2(offset, z);
     const double half = std::asin(std::min(1.0, radius / std::hypot(offset, z)));
     constexpr double kRight = 1.5707963267948966;
@@ -33,14 +33,14 @@ Interval tangents(double offset, double z, double radius) {
 /// Sets the film rectangle of a sphere and a box that both hold what is to be seen, wholly or
 /// partly in front of the camera.
 void project(SliceBounds& s, const Camera& camera) {
-    Interval x = {-kInfinite, kInfinite}, y = x;
+    Extent x = {-kInfinite, kInfinite}, y = x;
     // Where the camera's own plane cuts the sphere, it may show anywhere on the film.
     if (s.centre.z() > s.radius) {
         x = tangents(s.centre.x(), s.centre.z(), s.radius);
         y = tangents(s.centre.y(), s.centre.z(), s.radius);
     }
     if (s.low.z() > 0) {
-        const auto narrow = [&](Interval& i, double low, double high) {
+        const auto narrow = [&](Extent& i, double low, double high) {
             i.low = std::max(i.low, low / (low < 0 ? s.low.z() : s.high.z()));
             i.high = std::min(i.high, high / (high > 0 ? s.low.z() : s.high.z()));
         };

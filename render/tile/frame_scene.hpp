@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,32 +14,27 @@
 
 namespace tesserae::render {
 
-/// The scene as it is at one instant of the open shutter: what all rays of that instant share.
-struct Instant {
-    CameraDescription description;
-    Camera camera;  ///< of a cell
+/// The scene as rays of one part of the time meet it while the shutter is open: what moves is where
+/// it is at each ray's own time, and bounds hold it for the whole part.
+struct Interval {
     PlacedBodies placed;
-    LightSet lights;
-    BodyTree tree;  ///< empty where there are neither shadows nor rays of the integrator's
+    BodyTree tree;  ///< empty unless PictureNeeds has one
     Shading shading;
     std::unique_ptr<const LightIntegrator> integrator;
-    CameraRays rays;
     std::vector<std::uint32_t> glass_about;  ///< GlassBodies::about where view rays begin
-    std::optional<ViewScene> view;           ///< none where FrameScene::slice serves
 
-    /// @param bodies   their poses at the instant; only read here
-    Instant(const Picture& picture, const CameraDescription& description, const SliceSheet& sheet,
-            const Bodies& bodies, const RoughReflections& rough);
-    Instant(const Instant&) = delete;  // its parts refer to each other
+    /// @param reach   view rays begin no farther from the camera's place at the opening [m]
+    Interval(const Picture& picture, const Vec4& origin, const ShutterPart& part,
+             const LightSet& lights, const RoughReflections& rough, double reach);
+    Interval(const Interval&) = delete;  // its parts refer to each other
 };
 
-/// At how many instants a frame with an open shutter sees its bodies at most: 256, one a sample,
-/// and no more than keep the memory for their trees within bounds.
-int most_instants(std::size_t bodies, int samples);
+/// Into how many intervals a frame with an open shutter divides its time at most: no more than keep
+/// the memory for their trees within bounds.
+int most_intervals(std::size_t bodies);
 
-/// What all tiles of a frame share. While the shutter is open the scene is seen at so many instants
-/// that what moves moves by no more than about a pixel from one to the next, but at most one a
-/// sample; a sample sees one of them. Where nothing moves there is one.
+/// What all tiles of a frame share. While the shutter is open every sample has a time of its own.
+/// The time is divided into intervals so short that what moves stays about where it is.
 class FrameScene {
   public:
     FrameScene(const Picture& picture, bool wants_color);
@@ -52,16 +48,27 @@ class FrameScene {
     bool wants_color() const { return wants_color_; }   ///< for the image or the preview
 
     /// When the shutter opens: depth, normal, position and id are as they are then.
-    const Instant& opening() const { return *instants_.front(); }
-    /// @param time   uniform in [0, 1)
-    const Instant& at(double time) const;
-    bool is_still() const { return instants_.size() == 1; }
+    const Camera& camera() const { return camera_; }  ///< of a cell
+    const CameraRays& rays() const { return rays_; }
+    const Interval& opening() const { return opening_; }
 
-    /// The slice's bounds for view rays that all start in the pinhole of one instant; else empty,
-    /// and every instant has a ViewScene. Their film rectangles are grown by the filter's reach:
-    /// they hold every pixel of which a sample can meet the body.
+    /// Nothing moves: every sample sees the opening.
+    bool is_still() const { return intervals_.empty(); }
+    /// @param part   of the time that the shutter is open, in [0, 1)
+    double time(double part) const { return part * motions_.end(); }
+    const Interval& at(double time) const;
+    /// A view ray at a time, about the camera's place at the opening.
+    /// @param u   as in CameraRays::sample
+    Ray view_ray(const SliceSheet::Cell& cell, const Vec2& film, const std::array<double, 3>& u,
+                 double time) const;
+
+    /// The slice's bounds for view rays that all start in the pinhole, where nothing moves; else
+    /// empty. Their film rectangles are grown by the filter's reach: they hold every pixel of which
+    /// a sample can meet the body.
     const std::vector<SliceBounds>& slice() const { return slice_; }
-    bool is_pinhole() const { return is_still() && opening().rays.is_pinhole(); }
+    bool is_pinhole() const { return is_still() && rays_.is_pinhole(); }
+    /// For the opening's view rays where there is no slice().
+    const ViewScene& view() const { return *view_; }
 
   private:
     const Picture& picture_;
@@ -71,8 +78,15 @@ class FrameScene {
     PixelFilter filter_;
     std::uint64_t pattern_;
     bool wants_color_;
-    std::vector<std::unique_ptr<Instant>> instants_;  ///< the opening one, then those of samples
+    Camera camera_;
+    CameraRays rays_;
+    LightSet lights_;
+    Motions motions_;
+    bool camera_moves_;
+    Interval opening_;
+    std::vector<std::unique_ptr<Interval>> intervals_;  ///< of equal length, one after the other
     std::vector<SliceBounds> slice_;
+    std::optional<ViewScene> view_;
 };
 
 }  // namespace tesserae::render

@@ -17,8 +17,9 @@
 namespace tesserae::render {
 namespace {
 
-/// View rays that are traced together.
-constexpr int kBatch = 16;
+/// View rays that are traced together; more while something moves, as only those of one interval
+/// go side by side.
+constexpr int kBatch = 16, kMovingBatch = 64;
 /// The group of a sample's numbers that the camera uses; scattering counts from 0.
 constexpr std::uint32_t kCameraGroup = 0xffffffffu;
 /// The largest finite half.
@@ -30,13 +31,20 @@ Imath::half to_half(double v) {
 
 /// A view ray and what it meets. Made in place: copies would wait for the numbers just written.
 struct View {
-    View(const Instant& i, const ViewRay& view_ray, double far)
-        : instant(&i), in_slice(view_ray), ray(i.camera.to_world(view_ray, far)) {}
+    View(std::uint32_t sample, const Interval& i, const ViewRay& view_ray, const Ray& in_world)
+        : number(sample), interval(&i), in_slice(view_ray), ray(in_world) {}
 
-    const Instant* instant;
-    ViewRay in_slice;
-    Ray ray;  ///< the same, about the instant's camera
+    std::uint32_t number;  ///< of the sample, in its half
+    const Interval* interval;
+    ViewRay in_slice;  ///< of the opening; of other times none
+    Ray ray;
     std::optional<Surface> surface;
+};
+
+/// A sample's numbers for lens, slice and time.
+struct Draw {
+    std::uint32_t number;
+    std::array<double, 4> u;
 };
 
 /// Sums over a pixel's samples, or over one of their halves.
@@ -60,9 +68,7 @@ struct Half {
     std::uint64_t pattern;
     std::uint32_t first = 0, stride = 1;
 
-    std::uint32_t number(int index) const {
-        return first + stride * static_cast<std::uint32_t>(index);
-    }
+    std::uint32_t number(std::uint32_t index) const { return first + stride * index; }
 };
 
 /// The rays of one tile, window by window of the size of a film list.
@@ -82,15 +88,21 @@ class TileRays {
     void add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x, int y);
     // To views_:
     void add_centre(const Cell& cell, int x, int y);
-    void add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index);
-    void add_view(const Instant& instant, const ViewRay& ray) {
-        views_.emplace_back(instant, ray, limit_);
+    void add_samples_from_pinhole(const Cell& cell, int x, int y, std::uint64_t hash, int begin,
+                                  int end);
+    void add_samples_of_lens(const Cell& cell, int x, int y, std::uint64_t hash, int begin,
+                             int end);
+    void add_view(std::uint32_t number, const ViewRay& ray) {
+        views_.emplace_back(number, scene_.opening(), ray, scene_.camera().to_world(ray, limit_));
     }
     // Of views_:
-    void trace();
+    void trace(bool is_opening);
+    void trace_moving();
     void look_out_of_glass();
+    template <class Use>
+    void for_each_interval(Use&& use) const;
     void add_radiance(Filtered& sum, const Half& half, int x, int y);
-    void find_radiance(const Sampler& first);
+    void find_radiance(const Sampler& sampler);
 
     const FrameScene& scene_;
     const Tile& tile_;
@@ -102,22 +114,24 @@ class TileRays {
     bool wants_centre_, wants_samples_;
     FilmList list_;
     std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
-    std::vector<ViewRay> rays_;
+    std::vector<Draw> draws_;
+    std::vector<ViewRay> slice_rays_;
+    std::vector<Ray> rays_;
     std::vector<Hit> hits_;
     std::vector<GlassStart> starts_;  ///< empty where nothing is of glass
     std::vector<ViewSample> samples_;
     std::vector<Color> colors_;
 };
 
-void store_view(const View& view, Pixel& pixel) {
+void store_view(const View& view, const Camera& camera, Pixel& pixel) {
     if (!view.surface) return;
-    const Vec4 position = view.surface->point + view.instant->camera.origin();
+    const Vec4 position = view.surface->point + camera.origin();
     for (int i = 0; i < 4; ++i) {
         pixel.normal[i] = static_cast<float>(view.surface->normal[i]);
         pixel.position[i] = static_cast<float>(position[i]);
     }
     pixel.depth = static_cast<float>(view.surface->distance);
-    pixel.id = view.instant->placed.bodies[view.surface->body].id + 1;
+    pixel.id = view.interval->placed.bodies[view.surface->body].id + 1;
 }
 
 Averages averages_of(const Filtered& sum) {
@@ -176,8 +190,8 @@ Pixel TileRays::pixel(int x, int y) {
     if (wants_centre_) {
         views_.clear();
         add_centre(*cell, x, y);
-        trace();
-        store_view(views_.front(), pixel);
+        trace(true);
+        store_view(views_.front(), scene_.camera(), pixel);
         if (most_ == 1) add_radiance(sum, whole_, x, y);
     }
     if (wants_samples_ && most_ > least_) {
@@ -218,49 +232,93 @@ Averages TileRays::adapted(const Cell& cell, int x, int y) {
 void TileRays::add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x,
                            int y) {
     const std::uint64_t hash = pixel_hash(x, y, half.pattern);
+    const int batch = scene_.is_still() ? kBatch : kMovingBatch;
     while (sum.count < count) {
-        const int begin = sum.count, end = std::min(begin + kBatch, count);
+        const int begin = sum.count, end = std::min(begin + batch, count);
         views_.clear();
-        for (int i = begin; i < end; ++i) add_sample(cell, x, y, hash, i);
-        trace();
+        if (scene_.is_pinhole())
+            add_samples_from_pinhole(cell, x, y, hash, begin, end);
+        else
+            add_samples_of_lens(cell, x, y, hash, begin, end);
+        trace(scene_.is_still());
         add_radiance(sum, half, x, y);
     }
 }
 
 void TileRays::add_centre(const Cell& cell, int x, int y) {
-    const Instant& opening = scene_.opening();
-    add_view(opening, opening.rays.middle(cell, {x + 0.5, y + 0.5}));
+    add_view(0, scene_.rays().middle(cell, {x + 0.5, y + 0.5}));
 }
 
-void TileRays::add_sample(const Cell& cell, int x, int y, std::uint64_t hash, int index) {
-    const auto number = static_cast<std::uint32_t>(index);
-    const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(hash, number));
-    if (scene_.is_pinhole())
-        return add_view(scene_.opening(), scene_.opening().rays.middle(cell, film));
-    const auto u = Sampler(hash, number).group(kCameraGroup);
-    const Instant& instant = scene_.at(u[3]);
-    add_view(instant, instant.rays.sample(cell, film, {u[0], u[1], u[2]}));
+void TileRays::add_samples_from_pinhole(const Cell& cell, int x, int y, std::uint64_t hash,
+                                        int begin, int end) {
+    for (auto i = static_cast<std::uint32_t>(begin); i < static_cast<std::uint32_t>(end); ++i) {
+        const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(hash, i));
+        add_view(i, scene_.rays().middle(cell, film));
+    }
 }
 
-void TileRays::trace() {
+/// And through the open shutter: in the order of their times, so that those of an interval stand
+/// together.
+void TileRays::add_samples_of_lens(const Cell& cell, int x, int y, std::uint64_t hash, int begin,
+                                   int end) {
+    draws_.clear();
+    for (auto i = static_cast<std::uint32_t>(begin); i < static_cast<std::uint32_t>(end); ++i)
+        draws_.push_back({i, Sampler(hash, i).group(kCameraGroup)});
+    if (!scene_.is_still())
+        std::sort(draws_.begin(), draws_.end(), [](const Draw& a, const Draw& b) {
+            return a.u[3] != b.u[3] ? a.u[3] < b.u[3] : a.number < b.number;
+        });
+    for (const Draw& draw : draws_) {
+        const Vec2 film = Vec2(x, y) + scene_.filter().place(pixel_sample(hash, draw.number));
+        const std::array<double, 3> u = {draw.u[0], draw.u[1], draw.u[2]};
+        if (scene_.is_still()) {
+            add_view(draw.number, scene_.rays().sample(cell, film, u));
+        } else {
+            const double time = scene_.time(draw.u[3]);
+            views_.emplace_back(draw.number, scene_.at(time), ViewRay{},
+                                scene_.view_ray(cell, film, u, time));
+        }
+    }
+}
+
+/// Calls use(interval, first view, end) for views of one interval after the other.
+template <class Use>
+void TileRays::for_each_interval(Use&& use) const {
+    for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {
+        const Interval* interval = views_[begin].interval;
+        end = begin + 1;
+        while (end < views_.size() && views_[end].interval == interval) ++end;
+        use(*interval, begin, end);
+    }
+}
+
+void TileRays::trace(bool is_opening) {
     stats.view_rays += views_.size();
     hits_.resize(views_.size());
-    if (scene_.is_pinhole()) {
+    if (!is_opening) {
+        trace_moving();
+    } else if (scene_.is_pinhole()) {
         for (std::size_t i = 0; i < views_.size(); ++i)
-            hits_[i] = list_.nearest(views_[i].instant->placed, views_[i].in_slice.direction,
+            hits_[i] = list_.nearest(views_[i].interval->placed, views_[i].in_slice.direction,
                                      views_[i].ray, settings_, stats);
-    } else if (scene_.is_still()) {
-        rays_.clear();
-        for (const View& view : views_) rays_.push_back(view.in_slice);
-        scene_.opening().view->nearest(rays_, hits_, stats);
     } else {
-        for (std::size_t i = 0; i < views_.size(); ++i)
-            views_[i].instant->view->nearest({&views_[i].in_slice, 1}, {&hits_[i], 1}, stats);
+        slice_rays_.clear();
+        for (const View& view : views_) slice_rays_.push_back(view.in_slice);
+        scene_.view().nearest(slice_rays_, hits_, stats);
     }
     if (!scene_.opening().integrator->glass().is_empty()) look_out_of_glass();
     for (std::size_t i = 0; i < views_.size(); ++i)
         if (hits_[i])
-            views_[i].surface = views_[i].instant->shading.surface(hits_[i], views_[i].ray);
+            views_[i].surface = views_[i].interval->shading.surface(hits_[i], views_[i].ray);
+}
+
+void TileRays::trace_moving() {
+    rays_.clear();
+    for (const View& view : views_) rays_.push_back(view.ray);
+    for_each_interval([&](const Interval& interval, std::size_t begin, std::size_t end) {
+        interval.integrator->scene().nearest(std::span(rays_).subspan(begin, end - begin),
+                                             std::span(hits_).subspan(begin, end - begin), stats);
+    });
 }
 
 /// What is met first by rays that begin inside glass, which the searches take for met at once.
@@ -268,8 +326,9 @@ void TileRays::look_out_of_glass() {
     starts_.clear();
     for (std::size_t i = 0; i < views_.size(); ++i) {
         const View& view = views_[i];
-        const GlassBodies& glass = view.instant->integrator->glass();
-        const std::uint32_t medium = glass.medium_at(view.ray.origin, view.instant->glass_about);
+        const GlassBodies& glass = view.interval->integrator->glass();
+        const std::uint32_t medium =
+            glass.medium_at(view.ray.origin, view.interval->glass_about, view.ray.time);
         const bool is_inside = medium != GlassBodies::kNone;
         const GlassBodies::Event event = is_inside
                                              ? glass.next(medium, view.ray, stats)
@@ -281,7 +340,6 @@ void TileRays::look_out_of_glass() {
 
 /// Of the views of the half's next samples.
 void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
-    const int begin = sum.count;
     for (const View& view : views_) {
         ++sum.count;
         if (!view.surface) continue;
@@ -289,32 +347,29 @@ void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
         sum.albedo += view.surface->albedo;
     }
     if (!scene_.wants_color()) return;
-    find_radiance(Sampler(x, y, static_cast<std::uint32_t>(begin), half.pattern));
+    find_radiance(Sampler(x, y, 0, half.pattern));
     for (std::size_t i = 0; i < colors_.size(); ++i) {
         if (colors_[i].isFinite().all()) {
             sum.color.add(colors_[i]);
         } else {
             sum.color.add(Color::Zero());
-            stats.count_invalid({y, x, half.number(begin + static_cast<int>(i))}, 1);
+            stats.count_invalid({y, x, half.number(views_[i].number)}, 1);
         }
     }
 }
 
-void TileRays::find_radiance(const Sampler& first) {
+/// @param sampler   of any sample of the half
+void TileRays::find_radiance(const Sampler& sampler) {
     samples_.clear();
-    for (std::uint32_t i = 0; i < views_.size(); ++i)
-        samples_.push_back({views_[i].surface ? &*views_[i].surface : nullptr, views_[i].ray,
-                            first.of(first.index() + i)});
+    for (const View& view : views_)
+        samples_.push_back(
+            {view.surface ? &*view.surface : nullptr, view.ray, sampler.of(view.number)});
     for (std::size_t i = 0; i < starts_.size(); ++i) samples_[i].start = starts_[i];
     colors_.resize(views_.size());
-    // Those of one instant together.
-    for (std::size_t begin = 0, end; begin < views_.size(); begin = end) {
-        const Instant& instant = *views_[begin].instant;
-        end = begin + 1;
-        while (end < views_.size() && views_[end].instant == &instant) ++end;
-        instant.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
-                                     std::span(colors_).subspan(begin, end - begin), stats);
-    }
+    for_each_interval([&](const Interval& interval, std::size_t begin, std::size_t end) {
+        interval.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
+                                      std::span(colors_).subspan(begin, end - begin), stats);
+    });
 }
 
 }  // namespace

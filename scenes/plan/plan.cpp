@@ -25,6 +25,8 @@ constexpr std::uint64_t kStates = 6;
 constexpr std::uint64_t kSphereStepBytes = 4'000, kStepBytes = 14'000;
 /// A body's bounds in the picture's hierarchy and lists.
 constexpr std::uint64_t kPictureBytes = 300;
+/// How a body moves between two stored steps inside an open shutter.
+constexpr std::uint64_t kMotionBytes = 256;
 /// The program, its libraries and their buffers.
 constexpr std::uint64_t kProgramBytes = 100'000'000;
 /// A pixel of a tile in flight, all channels, before and after compression.
@@ -114,9 +116,9 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
     if (scene.camera.shutter > 0)
-        bytes += plan.bodies *
-                 (kPictureBytes * render::most_instants(plan.bodies, scene.render.most_samples()) +
-                  kStateBytes * (1 + shutter_steps(scene, 0).size()));
+        bytes +=
+            plan.bodies * (kPictureBytes * render::most_intervals(plan.bodies) +
+                           (kStateBytes + kMotionBytes) * (1 + shutter_steps(scene, 0).size()));
     return bytes;
 }
 

@@ -74,10 +74,13 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
     const int samples = scene.render.least_samples(), most = scene.render.most_samples();
     plan.decide("lens", needs.lens, fmt::format("aperture = {}", c.aperture),
                 "aperture = 0: a pinhole");
-    plan.decide("motion blur", c.shutter > 0 && (plan.moves || is_moving),
-                fmt::format("shutter = {}: up to {} instants a frame in which something moves",
-                            c.shutter, render::most_instants(plan.bodies, most)),
-                c.shutter > 0 ? "nothing moves" : "shutter = 0");
+    plan.decide(
+        "motion blur", c.shutter > 0 && (plan.moves || is_moving),
+        fmt::format(
+            "shutter = {}: every sample has a time of its own; where something moves, up to {} "
+            "intervals with trees of their own",
+            c.shutter, render::most_intervals(plan.bodies)),
+        c.shutter > 0 ? "nothing moves" : "shutter = 0");
     if (needs.slices)
         plan.decide("several slices", true,
                     fmt::format("{} side by side over {} m", c.slices, c.slice_thickness));

@@ -56,9 +56,8 @@ TEST(Exposure, AnOpenShutterShowsForHowLongABodyIsThere) {
     scene.camera.shutter = 0.5;
     scene.closing = scene.bodies;
     scene.closing->position[0].x() = 0.5;
-    // 0.2 of the way of 0.8 the ball is before the middle; 64 instants round that to 1/64, the
-    // pixel is a tenth of the ball wide.
-    EXPECT_NEAR(picture_of(scene).at("A", 16, 16), 0.25, 1.0 / 64 + kThreeSigma);
+    // 0.2 of the way of 0.8 the ball is before the middle; the pixel is a tenth of the ball wide.
+    EXPECT_NEAR(picture_of(scene).at("A", 16, 16), 0.25, kThreeSigma);
     // What the centre's ray alone says is as of the opening.
     EXPECT_EQ(picture_of(scene).id(16, 16), 0u);
 }
@@ -120,7 +119,7 @@ TEST(Exposure, ABounceInsideTheShutterIsSeen) {
     low.position[0].y() = -0.2;
     scene.path = {{0.5, low, scene.camera}, {1, scene.bodies, scene.camera}};
     // Twice through the middle, 0.2 of each way of 0.4 / 0.2 balls: half of the time.
-    EXPECT_NEAR(coverage(scene, 16, 16), 0.5, 1.0 / 64 + kThreeSigma);
+    EXPECT_NEAR(coverage(scene, 16, 16), 0.5, kThreeSigma);
     scene.path.clear();
     EXPECT_EQ(coverage(scene, 16, 16), 0);
 }
@@ -137,8 +136,8 @@ TEST(Exposure, MomentsDivideTheTimeAsTheySay) {
                   {1, right, scene.camera}};
     const double pixel = 5 * 2 * std::tan(5 * std::numbers::pi / 180) / 33;
     const int off = static_cast<int>(std::lround(0.25 / pixel));
-    EXPECT_NEAR(coverage(scene, 16 - off, 16), 0.1, 1.0 / 64 + kThreeSigma);
-    EXPECT_NEAR(coverage(scene, 16 + off, 16), 0.9, 1.0 / 64 + kThreeSigma);
+    EXPECT_NEAR(coverage(scene, 16 - off, 16), 0.1, kThreeSigma);
+    EXPECT_NEAR(coverage(scene, 16 + off, 16), 0.9, kThreeSigma);
     EXPECT_EQ(coverage(scene, 16, 16), 0);
 }
 

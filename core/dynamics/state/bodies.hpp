@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/algebra/rotor.hpp"
@@ -49,11 +50,19 @@ struct Bodies {
 /// @param between   gets them, the rest of it stays; may be `before`
 void interpolate_poses(const Bodies& before, const Bodies& after, double part, Bodies& between);
 
-/// The same, but that rotors turn at the bodies' angular velocities (the mean of both ends' along
-/// the way), however many times round; what that leaves to `after` they turn the shortest way
-/// meanwhile. A body that is the same in both stays.
+/// How a body turns from one state to a later one: at the mean of both angular velocities, however
+/// many times round; what that leaves to the later rotor it turns the shortest way meanwhile.
+struct Turning {
+    Rotor begin;
+    Bivector half_angle;  ///< exp(-half_angle) turns by the velocities
+    Bivector rest;        ///< exp(rest) turns by what they leave
+
+    /// @param part   0 to 1 of the way
+    Rotor at(double part) const { return exp(part * rest) * exp(-part * half_angle) * begin; }
+};
+
 /// @param time   from `before` to `after` [s]
-void follow_poses(const Bodies& before, const Bodies& after, double time, double part,
-                  Bodies& between);
+/// @return none where the rotor is the same in both
+std::optional<Turning> turning(const Bodies& before, const Bodies& after, double time, BodyId id);
 
 }  // namespace tesserae

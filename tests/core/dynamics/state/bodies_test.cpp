@@ -48,51 +48,47 @@ TEST(InterpolatePoses, MayOverwriteTheEarlierOnes) {
     EXPECT_EQ(before.rotor[0], apart.rotor[0]);
 }
 
-/// Turns of a random double rotation: closed form exp(-t/2 omega).
-TEST(FollowPoses, TurnsAtTheAngularVelocityHoweverFast) {
+Bodies one_body(const Rotor& rotor, const Bivector& angular_velocity) {
+    Bodies bodies;
+    bodies.types = {BodyType{Hypersphere{1}}};
+    bodies.type = {0};
+    bodies.position = bodies.velocity = {Vec4::Zero()};
+    bodies.rotor = {rotor}, bodies.angular_velocity = {angular_velocity};
+    return bodies;
+}
+
+/// Of a random double rotation: closed form exp(-t/2 omega).
+TEST(Turning, FollowsTheAngularVelocityHoweverFast) {
     const Bivector omega{.xy = 3, .xw = 1, .yz = -2, .zw = 5};
     const Rotor start = exp(Bivector{.xz = 0.4, .yw = -0.3});
     for (const double time : {0.01, 0.5, 1.0, 3.0, 10.0}) {
-        Bodies before;
-        before.types = {BodyType{Hypersphere{1}}};
-        before.type = {0};
-        before.position = {Vec4::Zero()}, before.velocity = {Vec4::Zero()};
-        before.rotor = {start}, before.angular_velocity = {omega};
-        Bodies after = before, found = before;
-        after.position[0] = {4, 0, 2, 0};
+        const Bodies before = one_body(start, omega);
+        Bodies after = before;
         after.rotor[0] = exp(-0.5 * time * omega) * start;
+        const Turning found = turning(before, after, time, 0).value();
         for (const double part : {0.0, 0.1, 0.5, 0.77, 1.0}) {
-            follow_poses(before, after, time, part, found);
             const Rotor exact = exp(-0.5 * part * time * omega) * start;
-            EXPECT_LE((to_matrix(found.rotor[0]) - to_matrix(exact)).norm(), 1e-12) << time;
-            EXPECT_LE((found.position[0] - part * after.position[0]).norm(), 1e-14);
+            EXPECT_LE((to_matrix(found.at(part)) - to_matrix(exact)).norm(), 1e-12) << time;
         }
         // What is the same at both ends has stopped.
-        follow_poses(before, before, time, 0.3, found);
-        EXPECT_EQ(found.rotor[0], start);
+        EXPECT_FALSE(turning(before, before, time, 0));
     }
 }
 
-TEST(FollowPoses, EndsWhereItShouldAndTakesTheShortestWayWithoutVelocity) {
-    Bodies before;
-    before.types = {BodyType{Hypersphere{1}}};
-    before.type = {0};
-    before.position = {Vec4::Zero()}, before.velocity = {Vec4::Zero()};
-    before.rotor = {exp(Bivector{.xy = 0.2, .zw = -1})};
-    before.angular_velocity = {Bivector{}};
-    Bodies after = before, found = before, shortest = before;
+TEST(Turning, EndsWhereItShouldAndTakesTheShortestWayWithoutVelocity) {
+    Bodies before = one_body(exp(Bivector{.xy = 0.2, .zw = -1}), {});
+    Bodies after = before, shortest = before;
     after.rotor[0] = exp(Bivector{.xz = 1, .zw = 0.4});
+    const Turning found = turning(before, after, 2, 0).value();
     for (const double part : {0.25, 0.5, 1.0}) {
-        follow_poses(before, after, 2, part, found);
         interpolate_poses(before, after, part, shortest);
-        EXPECT_LE((to_matrix(found.rotor[0]) - to_matrix(shortest.rotor[0])).norm(), 1e-14);
+        EXPECT_LE((to_matrix(found.at(part)) - to_matrix(shortest.rotor[0])).norm(), 1e-14);
     }
     // A blow in between: the velocities do not lead to the end, the way does.
     before.angular_velocity[0].yw = 7, after.angular_velocity[0].xy = -20;
-    follow_poses(before, after, 2, 1, found);
-    EXPECT_LE((to_matrix(found.rotor[0]) - to_matrix(after.rotor[0])).norm(), 1e-13);
-    follow_poses(before, after, 2, 0, found);
-    EXPECT_LE((to_matrix(found.rotor[0]) - to_matrix(before.rotor[0])).norm(), 1e-14);
+    const Turning blown = turning(before, after, 2, 0).value();
+    EXPECT_LE((to_matrix(blown.at(1)) - to_matrix(after.rotor[0])).norm(), 1e-13);
+    EXPECT_LE((to_matrix(blown.at(0)) - to_matrix(before.rotor[0])).norm(), 1e-14);
 }
 
 }  // namespace
