@@ -46,17 +46,19 @@ struct PlacedBodies {
 
     Pose pose(const PlacedBody& b, double time) const { return motions->pose(b.motion, time); }
     Vec4 direction_to_body(const PlacedBody& b, const Vec4& d, double time = 0) const {
-        if (b.moves()) return pose(b, time).turn * d;
+        if (b.moves()) [[unlikely]]
+            return pose(b, time).turn * d;
         if (b.turn == PlacedBody::kNotTurned) return d;
         return turns[b.turn] * d;
     }
     Vec4 direction_to_world(const PlacedBody& b, const Vec4& d, double time = 0) const {
-        if (b.moves()) return pose(b, time).turn.transpose() * d;
+        if (b.moves()) [[unlikely]]
+            return pose(b, time).turn.transpose() * d;
         if (b.turn == PlacedBody::kNotTurned) return d;
         return turns[b.turn].transpose() * d;
     }
     Vec4 point_to_body(const PlacedBody& b, const Vec4& p, double time = 0) const {
-        if (b.moves()) {
+        if (b.moves()) [[unlikely]] {
             const Pose at = pose(b, time);
             return at.turn * (p - at.centre);
         }
