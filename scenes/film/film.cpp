@@ -105,13 +105,13 @@ void coast(Bodies& bodies, double time) {
 struct Exposure {
     Moment opening;
     std::vector<render::ShutterMoment> path;
-    std::optional<Moment> next, last;  ///< the frames after and before, for vectors of motion
+    std::optional<Moment> after, before;  ///< the frames beside, for vectors of motion
 
     Exposure(const Scene& scene, Poses& poses, int frame)
         : opening(moment(scene, poses, frame_instant(scene, frame))) {
         if (scene.render.channels.motion) {
-            next = neighbour(scene, poses, frame, 1);
-            last = neighbour(scene, poses, frame, -1);
+            after = neighbour(scene, poses, frame, 1);
+            before = neighbour(scene, poses, frame, -1);
         }
         if (scene.camera.shutter > 0) open_shutter(scene, poses, frame);
     }
@@ -122,7 +122,7 @@ struct Exposure {
             return a && b ? a->looks_like(*b, scene) : !a && !b;
         };
         return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty() &&
-               like(next, other.next) && like(last, other.last);
+               like(after, other.after) && like(before, other.before);
     }
     render::Picture picture(const Scene& scene, int frame) const {
         return {opening.bodies,
@@ -133,8 +133,8 @@ struct Exposure {
                 scene.render,
                 path,
                 frame,
-                next ? &*next : nullptr,
-                last ? &*last : nullptr};
+                after ? &*after : nullptr,
+                before ? &*before : nullptr};
     }
 
   private:
@@ -158,11 +158,11 @@ struct Exposure {
         if (is_still) path.clear();
     }
 
-    /// The frame `by` frames on. Where there is none, or frames are stills, the bodies of this one
-    /// at their velocities.
+    /// The frame `by` frames on. Where there is none the bodies of this one go on at their
+    /// velocities.
     Moment neighbour(const Scene& scene, Poses& poses, int frame, int by) const {
         const FrameInstant at = frame_instant(scene, frame + by);
-        if (poses.moves() && has_frame(scene, frame + by)) return moment(scene, poses, at);
+        if (has_frame(scene, frame + by)) return moment(scene, poses, at);
         Moment coasting = {{opening.bodies, camera_of(scene, at)}};
         coast(coasting.bodies, by / scene.render.frames_per_second);
         return coasting;

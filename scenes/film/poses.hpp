@@ -24,9 +24,6 @@ class Poses {
     /// Valid until the next call.
     const Bodies& at(const FrameInstant& instant);
 
-    /// From frame to frame: there is a trajectory.
-    bool moves() const { return trajectory_ != nullptr; }
-
     /// A trajectory holds the step; of a shutter's it may not.
     bool has(std::uint64_t step) const;
 
