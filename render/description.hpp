@@ -105,6 +105,10 @@ struct Crop {
 struct Channels {
     bool color = true, depth = true, normal = true, albedo = true, id = true, position = false;
     bool variance = false, samples = false;
+    bool motion = false, zplanar = false, normal3 = false, light = false;
+
+    /// Any that LayerPixel holds.
+    bool any_layer() const { return motion || zplanar || normal3 || light; }
 };
 
 struct Settings {

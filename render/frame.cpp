@@ -38,7 +38,8 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
                         const std::atomic<bool>& stop) {
     const Settings& settings = picture.settings;
     const Crop window = settings.window();
-    const FrameScene scene(picture, settings.channels.color || !preview.empty());
+    const Channels& channels = settings.channels;
+    const FrameScene scene(picture, channels.color || channels.light || !preview.empty());
     TileSource source(scene.slice(), window, settings.tile);
     ExrWriter image(exr, settings, window, info, picture.camera, scene.camera());
     std::optional<Preview> small;

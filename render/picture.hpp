@@ -20,6 +20,12 @@ struct ShutterMoment {
     CameraDescription camera;
 };
 
+/// The frame before or after.
+struct Neighbour {
+    Bodies bodies;
+    CameraDescription camera;
+};
+
 /// Everything that decides a frame's pixels. Refers to its parts; they must outlive it.
 struct Picture {
     const Bodies& bodies;                    ///< poses at the frame's time, when the shutter opens
@@ -32,6 +38,8 @@ struct Picture {
     /// closes; none for one that is open for no time. Between moments bodies move evenly.
     std::span<const ShutterMoment> path = {};
     int frame = 0;  ///< its number: frames have random numbers of their own
+    /// Of the same bodies: for Channels::motion only. Without one its vectors are 0.
+    const Neighbour *next = nullptr, *last = nullptr;
 };
 
 /// What goes into the header beside the pixels.
@@ -59,17 +67,25 @@ struct FrameStats {
     /// Samples whose colour was infinite or no number: left out of their pixels, as black.
     std::uint64_t invalid_samples = 0;
     SampleNumber first_invalid;  ///< the lowest of them, if there is any
+    /// Pixels of which a stored colour is beyond what a half holds, +-65504: stored as that.
+    std::uint64_t clamped_pixels = 0;
+    SampleNumber first_clamped;  ///< the lowest of them, if there is any; sample 0
 
     FrameStats& operator+=(const FrameStats& o) {
         view_rays += o.view_rays, shadow_rays += o.shadow_rays;
         bounce_rays += o.bounce_rays;
         distance_evaluations += o.distance_evaluations, unresolved += o.unresolved;
         if (o.invalid_samples > 0) count_invalid(o.first_invalid, o.invalid_samples);
+        if (o.clamped_pixels > 0) count_clamped(o.first_clamped, o.clamped_pixels);
         return *this;
     }
     void count_invalid(const SampleNumber& sample, std::uint64_t count) {
         if (invalid_samples == 0 || sample < first_invalid) first_invalid = sample;
         invalid_samples += count;
+    }
+    void count_clamped(const SampleNumber& pixel, std::uint64_t count) {
+        if (clamped_pixels == 0 || pixel < first_clamped) first_clamped = pixel;
+        clamped_pixels += count;
     }
 };
 

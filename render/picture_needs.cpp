@@ -11,7 +11,8 @@ namespace {
 /// With one sample the only ray goes through the centre.
 bool has_centre_rays(const Settings& settings) {
     const Channels& c = settings.channels;
-    return settings.most_samples() > 1 && (c.depth || c.normal || c.position || c.id);
+    return settings.most_samples() > 1 &&
+           (c.depth || c.normal || c.position || c.id || c.motion || c.zplanar || c.normal3);
 }
 
 }  // namespace

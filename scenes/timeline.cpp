@@ -69,7 +69,8 @@ namespace {
 FrameInstant instant_of(const Scene& scene, double frame) {
     const double time = frame / scene.render.frames_per_second;
     if (!scene.physics) return {time, 0, 0};
-    const double steps = frame * scene.physics->steps_per_second / scene.render.frames_per_second;
+    const double steps =
+        std::max(0.0, frame * scene.physics->steps_per_second / scene.render.frames_per_second);
     const double nearest = std::round(steps);
     const double last = static_cast<double>(step_count(scene));
     if (std::abs(steps - nearest) <= kSameStep * std::max(1.0, steps) || steps >= last)
@@ -81,6 +82,8 @@ FrameInstant instant_of(const Scene& scene, double frame) {
 }  // namespace
 
 FrameInstant frame_instant(const Scene& scene, int frame) { return instant_of(scene, frame); }
+
+bool has_frame(const Scene& scene, int frame) { return frame >= 0 && frame < frame_count(scene); }
 
 FrameInstant closing_instant(const Scene& scene, int frame) {
     return instant_of(scene, frame + scene.camera.shutter);
@@ -119,6 +122,9 @@ std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<in
     for (int frame : frames) {
         add(frame_instant(scene, frame));
         if (scene.camera.shutter > 0) add(closing_instant(scene, frame));
+        if (!scene.render.channels.motion) continue;
+        for (const int other : {frame - 1, frame + 1})
+            if (has_frame(scene, other)) add(frame_instant(scene, other));
     }
     sort_without_repeats(steps);
     return steps;

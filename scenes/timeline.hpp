@@ -22,7 +22,11 @@ struct FrameInstant {
     std::uint64_t step = 0;  ///< the last step at or before it
     double fraction = 0;     ///< of the way to the next step, in [0, 1); 0: exactly at `step`
 };
+/// @param frame   also one that the scene does not have: all stands still before the first step and
+///                after the last
 FrameInstant frame_instant(const Scene& scene, int frame);
+/// Whether the frame is one of frame_count().
+bool has_frame(const Scene& scene, int frame);
 /// When the frame's shutter closes; no later than the last step.
 FrameInstant closing_instant(const Scene& scene, int frame);
 
@@ -31,7 +35,8 @@ FrameInstant closing_instant(const Scene& scene, int frame);
 /// without; with them blurred bodies turn and bounce as they do.
 std::vector<std::uint64_t> shutter_steps(const Scene& scene, int frame);
 
-/// Steps that the given frames cannot do without, ascending, without repeats.
+/// Steps that the given frames cannot do without, ascending, without repeats; for vectors of motion
+/// those of the frames before and after as well.
 std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<int>& frames);
 
 /// The same with their shutter_steps().

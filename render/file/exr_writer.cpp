@@ -64,7 +64,29 @@ struct ChannelPlace {
     const char* name;
     Imf::PixelType type;
     std::size_t offset;
+    bool in_layers = false;  ///< of LayerPixel, not of Pixel
 };
+
+void add_layers(const Channels& wanted, std::vector<ChannelPlace>& places) {
+    const auto add = [&](bool want, Imf::PixelType type, std::size_t first,
+                         std::initializer_list<const char*> names) {
+        if (!want) return;
+        const std::size_t size = type == Imf::HALF ? sizeof(Imath::half) : sizeof(float);
+        for (const char* name : names) {
+            places.push_back({name, type, first, true});
+            first += size;
+        }
+    };
+    add(wanted.motion, Imf::FLOAT, offsetof(LayerPixel, forward), {"forward.u", "forward.v"});
+    add(wanted.motion, Imf::FLOAT, offsetof(LayerPixel, backward), {"backward.u", "backward.v"});
+    add(wanted.zplanar, Imf::FLOAT, offsetof(LayerPixel, plane_depth), {"Zplanar"});
+    add(wanted.normal3, Imf::FLOAT, offsetof(LayerPixel, slice_normal),
+        {"Nslice.X", "Nslice.Y", "Nslice.Z"});
+    add(wanted.light, Imf::HALF, offsetof(LayerPixel, direct),
+        {"direct.R", "direct.G", "direct.B"});
+    add(wanted.light, Imf::HALF, offsetof(LayerPixel, indirect),
+        {"indirect.R", "indirect.G", "indirect.B"});
+}
 
 std::vector<ChannelPlace> places_of(const Channels& wanted) {
     constexpr std::size_t kColor = offsetof(Pixel, color), kAlbedo = offsetof(Pixel, albedo);
@@ -95,6 +117,7 @@ std::vector<ChannelPlace> places_of(const Channels& wanted) {
                           {"variance.B", Imf::FLOAT, offsetof(Pixel, variance) + 8}});
     add(wanted.samples, {{"samples", Imf::UINT, offsetof(Pixel, samples)}});
     add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
+    add_layers(wanted, places);
     return places;
 }
 
@@ -203,15 +226,17 @@ ExrWriter::ExrWriter(const std::filesystem::path& path, const Settings& settings
 ExrWriter::~ExrWriter() = default;
 
 PackedTile ExrWriter::pack(const TileImage& tile) {
-    // Channels lie interleaved in the tile's pixels.
+    // Channels lie interleaved in the tile's pixels and layers.
     const Imath::V2i corner(tile.x0, tile.y0);
     Imf::FrameBuffer buffer;
     for (const ChannelPlace& place : places_of(channels_)) {
-        const char* first = reinterpret_cast<const char*>(tile.pixels.data()) + place.offset;
+        const std::size_t stride = place.in_layers ? sizeof(LayerPixel) : sizeof(Pixel);
+        const char* first = (place.in_layers ? reinterpret_cast<const char*>(tile.layers.data())
+                                             : reinterpret_cast<const char*>(tile.pixels.data())) +
+                            place.offset;
         buffer.insert(place.name,
                       Imf::Slice::Make(place.type, first, corner, tile.width(), tile.y1 - tile.y0,
-                                       sizeof(Pixel),
-                                       sizeof(Pixel) * static_cast<std::size_t>(tile.width())));
+                                       stride, stride * static_cast<std::size_t>(tile.width())));
     }
     Packer& packer = file_->packers.local();
     packer.stream.bytes.clear();

@@ -20,6 +20,9 @@ void DirectIntegrator::radiance(std::span<const ViewSample> samples, std::span<C
         trace(wave, stats);
     }
     for (const LightPath& path : wave.paths) colors[path.sample] = path.sum;
+    // All that it makes counts as direct.
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (samples[i].direct) *samples[i].direct = colors[i];
 }
 
 /// Adds what comes from where a path has arrived after so many scatterings, and sends it on. False

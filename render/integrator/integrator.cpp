@@ -47,6 +47,8 @@ void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint3
     path.is_exit = sample.start.is_exit;
     path.ray.limit = sample.first ? sample.first->distance : kMiss;
     path.light = lights_.first_sphere(path.ray).sphere;
+    path.direct = sample.direct;
+    if (path.direct) *path.direct = Color::Zero();
 }
 
 void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {

@@ -28,6 +28,7 @@ struct ViewSample {
     Ray ray;
     Sampler sampler;  ///< of the sample; its groups are used from 0 on
     GlassStart start{};
+    Color* direct = nullptr;  ///< gets LightPath::direct, where that is asked for
 };
 
 /// Light followed from the viewer back: the ray that it has come to, what that meets (a surface, a
@@ -47,6 +48,8 @@ struct LightPath {
     std::uint32_t light = LightSet::kNone;
 
     Color sum = Color::Zero(), throughput = Color::Ones();
+    /// Where asked for: the part of the sum that is no indirect light (see since_rough).
+    Color* direct = nullptr;
     /// Scatterings since the first surface that is no mirror or glass, with that one's. What such a
     /// surface gets from a light or from what glows is direct, what comes farther not.
     int since_rough = 0;
@@ -77,7 +80,7 @@ class LightIntegrator {
                     const LightSet& lights, const Shading& shading);
     virtual ~LightIntegrator() = default;
 
-    /// @param colors   as many as samples
+    /// @param colors   as many as samples; what a sample's `direct` gets is no more than its colour
     virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
                           FrameStats& stats) const = 0;
 

@@ -71,6 +71,7 @@ bool PathIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats) 
 void PathIntegrator::add(LightPath& path, const Color& light, bool is_indirect) const {
     const Color seen = path.throughput * light;
     path.sum += is_indirect ? clamped(seen, settings_.clamp_indirect) : seen;
+    if (path.direct && !is_indirect) *path.direct += seen;
 }
 
 Color PathIntegrator::light_of_points(const Surface& s, const Bsdf& bsdf, FrameStats& stats) const {

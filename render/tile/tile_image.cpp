@@ -53,6 +53,7 @@ struct Filtered {
     Color albedo = Color::Zero();
     double alpha = 0;
     int count = 0;
+    Color direct = Color::Zero(), indirect = Color::Zero();  ///< where they are asked for
 };
 
 /// What is averaged over a pixel's samples.
@@ -60,6 +61,7 @@ struct Averages {
     Color color, variance, albedo;
     double alpha;
     int count;
+    Color direct, indirect;
 };
 
 /// Samples of a pixel with random numbers of one pattern. In reports of samples, those of a pixel
@@ -78,7 +80,8 @@ class TileRays {
 
     /// Makes ready for the pixels of a window.
     void enter(const Crop& window) { list_.fill(scene_.slice(), tile_.candidates, window); }
-    Pixel pixel(int x, int y);
+    /// @param layers   the pixel's; null where no channel is of them
+    Pixel pixel(int x, int y, LayerPixel* layers);
     FrameStats stats;
 
   private:
@@ -103,6 +106,8 @@ class TileRays {
     void for_each_interval(Use&& use) const;
     void add_radiance(Filtered& sum, const Half& half, int x, int y);
     void find_radiance(const Sampler& sampler);
+    void store_layers(const View& view, LayerPixel& layers) const;
+    void store(const Averages& averages, int x, int y, Pixel& pixel, LayerPixel* layers);
 
     const FrameScene& scene_;
     const Tile& tile_;
@@ -120,7 +125,8 @@ class TileRays {
     std::vector<Hit> hits_;
     std::vector<GlassStart> starts_;  ///< empty where nothing is of glass
     std::vector<ViewSample> samples_;
-    std::vector<Color> colors_;
+    std::vector<Color> colors_, direct_;
+    CentreLayers layers_;
 };
 
 void store_view(const View& view, const Camera& camera, Pixel& pixel) {
@@ -135,15 +141,23 @@ void store_view(const View& view, const Camera& camera, Pixel& pixel) {
 }
 
 Averages averages_of(const Filtered& sum) {
-    return {sum.color.mean(), sum.color.variance(), sum.albedo / sum.count, sum.alpha / sum.count,
-            sum.count};
+    return {
+        sum.color.mean(), sum.color.variance(),   sum.albedo / sum.count,  sum.alpha / sum.count,
+        sum.count,        sum.direct / sum.count, sum.indirect / sum.count};
 }
 
 /// Of two independent sets of samples, each with the same weight whatever its number.
 Averages middle_of(const Averages& a, const Averages& b) {
-    return {0.5 * (a.color + b.color), 0.25 * (a.variance + b.variance),
-            0.5 * (a.albedo + b.albedo), 0.5 * (a.alpha + b.alpha), a.count + b.count};
+    return {0.5 * (a.color + b.color),
+            0.25 * (a.variance + b.variance),
+            0.5 * (a.albedo + b.albedo),
+            0.5 * (a.alpha + b.alpha),
+            a.count + b.count,
+            0.5 * (a.direct + b.direct),
+            0.5 * (a.indirect + b.indirect)};
 }
+
+bool is_beyond_half(const Color& color) { return (color.abs() > kHalfMax).any(); }
 
 void store_averages(const Averages& averages, Pixel& pixel) {
     for (int i = 0; i < 3; ++i) {
@@ -158,9 +172,11 @@ void store_averages(const Averages& averages, Pixel& pixel) {
 }  // namespace
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
-    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}};
+    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}, {}};
     image.pixels.resize(static_cast<std::size_t>(image.width()) *
                         static_cast<std::size_t>(tile.y1 - tile.y0));
+    const bool has_layers = scene.picture().settings.channels.any_layer();
+    if (has_layers) image.layers.resize(image.pixels.size(), CentreLayers::empty());
     TileRays rays(scene, tile);
     constexpr int kSide = FilmList::kSide;
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kSide)
@@ -171,7 +187,9 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
             for (int y = window.y0; y < window.y1; ++y)
                 for (int x = window.x0; x < window.x1; ++x) {
                     if (stop.load(std::memory_order_relaxed)) throw Stopped();
-                    image.pixels[image.index(x, y)] = rays.pixel(x, y);
+                    const std::size_t index = image.index(x, y);
+                    image.pixels[index] =
+                        rays.pixel(x, y, has_layers ? &image.layers[index] : nullptr);
                 }
         }
     image.stats = rays.stats;
@@ -180,7 +198,7 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
 
 namespace {
 
-Pixel TileRays::pixel(int x, int y) {
+Pixel TileRays::pixel(int x, int y, LayerPixel* layers) {
     Pixel pixel = {};
     pixel.depth = std::numeric_limits<float>::infinity();
     const auto cell = scene_.sheet().cell_of(x, y);
@@ -192,15 +210,35 @@ Pixel TileRays::pixel(int x, int y) {
         add_centre(*cell, x, y);
         trace(true);
         store_view(views_.front(), scene_.camera(), pixel);
+        if (layers) store_layers(views_.front(), *layers);
         if (most_ == 1) add_radiance(sum, whole_, x, y);
     }
     if (wants_samples_ && most_ > least_) {
-        store_averages(adapted(*cell, x, y), pixel);
+        store(adapted(*cell, x, y), x, y, pixel, layers);
         return pixel;
     }
     if (wants_samples_) add_samples(sum, whole_, most_, *cell, x, y);
-    if (sum.count > 0) store_averages(averages_of(sum), pixel);
+    if (sum.count > 0) store(averages_of(sum), x, y, pixel, layers);
     return pixel;
+}
+
+void TileRays::store_layers(const View& view, LayerPixel& layers) const {
+    const Surface* surface = view.surface ? &*view.surface : nullptr;
+    const BodyId body = surface ? view.interval->placed.bodies[surface->body].id : 0;
+    layers_.store(view.ray, surface, body, layers);
+}
+
+void TileRays::store(const Averages& averages, int x, int y, Pixel& pixel, LayerPixel* layers) {
+    store_averages(averages, pixel);
+    bool is_clamped = settings_.channels.color && is_beyond_half(averages.color);
+    if (settings_.channels.light) {
+        for (int i = 0; i < 3; ++i) {
+            layers->direct[i] = to_half(averages.direct[i]);
+            layers->indirect[i] = to_half(averages.indirect[i]);
+        }
+        is_clamped |= is_beyond_half(averages.direct) || is_beyond_half(averages.indirect);
+    }
+    if (is_clamped) stats.count_clamped({y, x, 0}, 1);
 }
 
 TileRays::TileRays(const FrameScene& scene, const Tile& tile)
@@ -210,7 +248,8 @@ TileRays::TileRays(const FrameScene& scene, const Tile& tile)
       limit_(settings_.ray_limit()),
       whole_({scene.pattern()}),
       halves_({Half{scene.pattern(), 0, 2}, Half{second_pattern(scene.pattern()), 1, 2}}),
-      least_(settings_.least_samples()) {
+      least_(settings_.least_samples()),
+      layers_(scene.picture(), scene.camera(), scene.sheet()) {
     const Channels& c = settings_.channels;
     most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples()
                                                               : settings_.samples;
@@ -351,6 +390,9 @@ void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
     for (std::size_t i = 0; i < colors_.size(); ++i) {
         if (colors_[i].isFinite().all()) {
             sum.color.add(colors_[i]);
+            if (!settings_.channels.light) continue;
+            sum.direct += direct_[i];
+            sum.indirect += colors_[i] - direct_[i];
         } else {
             sum.color.add(Color::Zero());
             stats.count_invalid({y, x, half.number(views_[i].number)}, 1);
@@ -366,6 +408,10 @@ void TileRays::find_radiance(const Sampler& sampler) {
             {view.surface ? &*view.surface : nullptr, view.ray, sampler.of(view.number)});
     for (std::size_t i = 0; i < starts_.size(); ++i) samples_[i].start = starts_[i];
     colors_.resize(views_.size());
+    if (settings_.channels.light) {
+        direct_.resize(views_.size());
+        for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].direct = &direct_[i];
+    }
     for_each_interval([&](const Interval& interval, std::size_t begin, std::size_t end) {
         interval.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
                                       std::span(colors_).subspan(begin, end - begin), stats);

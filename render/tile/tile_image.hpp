@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/tile/centre_layers.hpp"
 #include "render/tile/frame_scene.hpp"
 #include "render/tile/tiles.hpp"
 
@@ -29,6 +30,7 @@ struct TileImage {
     int column = 0, row = 0;
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     std::vector<Pixel> pixels;
+    std::vector<LayerPixel> layers;  ///< in the same order; empty where no channel is of them
     FrameStats stats;
 
     int width() const { return x1 - x0; }
@@ -39,10 +41,10 @@ struct TileImage {
     const Pixel& at(int x, int y) const { return pixels[index(x, y)]; }
 };
 
-/// Renders a tile's pixels. Depth, normal, position and id are those of the ray through the pixel's
-/// centre when the shutter opens; colour, coverage and albedo are averages over the pixel's
-/// samples, or the centre ray's where there is one sample. With a noise target noisy pixels get
-/// more samples, see sample_adaptively().
+/// Renders a tile's pixels. Depths, normals, position, motion and id are those of the ray through
+/// the pixel's centre when the shutter opens; colour, coverage and albedo are averages over the
+/// pixel's samples, or the centre ray's where there is one sample. With a noise target noisy pixels
+/// get more samples, see sample_adaptively().
 /// @throws Stopped once `stop` is set
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop);
 

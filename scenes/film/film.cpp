@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "core/algebra/rotor.hpp"
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
@@ -79,10 +80,7 @@ std::string id_names(const Scene& scene) {
 }
 
 /// What of a scene changes from frame to frame.
-struct Moment {
-    Bodies bodies;
-    render::CameraDescription camera;
-
+struct Moment : render::Neighbour {
     bool looks_like(const Moment& other, const Scene& scene) const {
         if (!(camera == other.camera)) return false;
         for (BodyId id = 0; id < bodies.size(); ++id)
@@ -94,14 +92,53 @@ struct Moment {
     }
 };
 
+/// Moves bodies for a time [s] (back, if it is negative) at the velocities that they have.
+void coast(Bodies& bodies, double time) {
+    for (BodyId id = 0; id < bodies.size(); ++id) {
+        bodies.position[id] += time * bodies.velocity[id];
+        if (!(bodies.angular_velocity[id] == Bivector{}))
+            bodies.rotor[id] = exp(-0.5 * time * bodies.angular_velocity[id]) * bodies.rotor[id];
+    }
+}
+
 /// What a frame shows: the shutter opens and, if it is open for any time, closes.
 struct Exposure {
     Moment opening;
     std::vector<render::ShutterMoment> path;
+    std::optional<Moment> after, before;  ///< the frames beside, for vectors of motion
 
     Exposure(const Scene& scene, Poses& poses, int frame)
         : opening(moment(scene, poses, frame_instant(scene, frame))) {
-        if (scene.camera.shutter == 0) return;
+        if (scene.render.channels.motion) {
+            after = neighbour(scene, poses, frame, 1);
+            before = neighbour(scene, poses, frame, -1);
+        }
+        if (scene.camera.shutter > 0) open_shutter(scene, poses, frame);
+    }
+
+    /// But for what is random in the picture.
+    bool looks_like(const Exposure& other, const Scene& scene) const {
+        const auto like = [&](const std::optional<Moment>& a, const std::optional<Moment>& b) {
+            return a && b ? a->looks_like(*b, scene) : !a && !b;
+        };
+        return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty() &&
+               like(after, other.after) && like(before, other.before);
+    }
+    render::Picture picture(const Scene& scene, int frame) const {
+        return {opening.bodies,
+                scene.appearance,
+                scene.materials,
+                opening.camera,
+                scene.lights,
+                scene.render,
+                path,
+                frame,
+                after ? &*after : nullptr,
+                before ? &*before : nullptr};
+    }
+
+  private:
+    void open_shutter(const Scene& scene, Poses& poses, int frame) {
         const double begin = frame_instant(scene, frame).time;
         const double rate = scene.physics ? scene.physics->steps_per_second : 1;
         bool is_still = true;
@@ -121,24 +158,20 @@ struct Exposure {
         if (is_still) path.clear();
     }
 
-    /// But for what is random in the picture.
-    bool looks_like(const Exposure& other, const Scene& scene) const {
-        return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty();
+    /// The frame `by` frames on. Where there is none the bodies of this one go on at their
+    /// velocities.
+    Moment neighbour(const Scene& scene, Poses& poses, int frame, int by) const {
+        const FrameInstant at = frame_instant(scene, frame + by);
+        if (has_frame(scene, frame + by)) return moment(scene, poses, at);
+        Moment coasting = {{opening.bodies, camera_of(scene, at)}};
+        coast(coasting.bodies, by / scene.render.frames_per_second);
+        return coasting;
     }
-    render::Picture picture(const Scene& scene, int frame) const {
-        return {opening.bodies,
-                scene.appearance,
-                scene.materials,
-                opening.camera,
-                scene.lights,
-                scene.render,
-                path,
-                frame};
+    static render::CameraDescription camera_of(const Scene& scene, const FrameInstant& instant) {
+        return camera_at(scene.camera, scene.camera_keys, instant.time);
     }
-
-  private:
     static Moment moment(const Scene& scene, Poses& poses, const FrameInstant& instant) {
-        return {poses.at(instant), camera_at(scene.camera, scene.camera_keys, instant.time)};
+        return {{poses.at(instant), camera_of(scene, instant)}};
     }
 };
 
@@ -168,16 +201,33 @@ void require_folder_of(const Scene& scene, const fs::path& folder, bool overwrit
             folder.string(), first_difference(other, scene.effective)));
 }
 
+namespace {
+
+/// That renders one pixel of a frame.
+std::string command_for(const Scene& scene, int frame, const render::SampleNumber& s) {
+    return fmt::format("tesserae render {} --frames {} --crop {},{},{},{} -o DIR",
+                       scene.file.string(), frame, s.x, s.y, s.x + 1, s.y + 1);
+}
+
+}  // namespace
+
+std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& scene, int frame) {
+    if (stats.clamped_pixels == 0) return {};
+    const render::SampleNumber& s = stats.first_clamped;
+    return fmt::format(
+        "{}: frame {}: {} pixels have a colour beyond 65504, the most that a half holds, and are "
+        "stored as that; weaker lights mend it; the first is pixel {},{}; to render it alone: {}",
+        scene.file.string(), frame, stats.clamped_pixels, s.x, s.y, command_for(scene, frame, s));
+}
+
 std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame) {
     if (stats.invalid_samples == 0) return {};
     const render::SampleNumber& s = stats.first_invalid;
     return fmt::format(
         "{}: frame {}: {} samples were infinite or no number and count as black; the first is "
-        "sample "
-        "{} of pixel {},{}; to render it alone: tesserae render {} --frames {} --crop {},{},{},{} "
-        "-o DIR",
-        scene.file.string(), frame, stats.invalid_samples, s.sample, s.x, s.y, scene.file.string(),
-        frame, s.x, s.y, s.x + 1, s.y + 1);
+        "sample {} of pixel {},{}; to render it alone: {}",
+        scene.file.string(), frame, stats.invalid_samples, s.sample, s.x, s.y,
+        command_for(scene, frame, s));
 }
 
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
@@ -222,8 +272,9 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         } else {
             const render::FrameStats stats =
                 render::render_frame(picture, info, files.exr, files.preview, stop_requested());
-            const std::string invalid = invalid_samples_text(stats, scene, info.frame);
-            if (!invalid.empty()) fmt::print(stderr, "tesserae: {}\n", invalid);
+            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
+                                            clamped_pixels_text(stats, scene, info.frame)})
+                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
             report.stats += stats;
             ++report.rendered;
             shown.emplace(Shown{std::move(exposure), files});

@@ -31,6 +31,10 @@ void create_folder(const std::filesystem::path& folder);
 /// the pixel of the lowest again. Empty if there are none.
 std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame);
 
+/// How many pixels of a frame are too bright for the file, and the command that renders the lowest
+/// again. Empty if there are none.
+std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& scene, int frame);
+
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
 /// the caller's parallel::Threads.

@@ -33,7 +33,11 @@ constexpr Flag<render::Channels> kChannels[] = {{"color", &render::Channels::col
                                                 {"id", &render::Channels::id},
                                                 {"position", &render::Channels::position},
                                                 {"variance", &render::Channels::variance},
-                                                {"samples", &render::Channels::samples}};
+                                                {"samples", &render::Channels::samples},
+                                                {"motion", &render::Channels::motion},
+                                                {"zplanar", &render::Channels::zplanar},
+                                                {"normal3", &render::Channels::normal3},
+                                                {"light", &render::Channels::light}};
 
 struct NotEmpty {
     void read(TableReader& reader, const char* key, std::string& value) const {

@@ -31,6 +31,10 @@ constexpr std::uint64_t kMotionBytes = 256;
 constexpr std::uint64_t kProgramBytes = 100'000'000;
 /// A pixel of a tile in flight, all channels, before and after compression.
 constexpr std::uint64_t kPixelBytes = 200;
+/// The same of its further layers.
+constexpr std::uint64_t kLayerBytes = 100;
+/// More states for vectors of motion: the neighbours of a frame and of the one before it.
+constexpr std::uint64_t kNeighbourStates = 4;
 /// Tiles of a thread in memory: of large ones two are under way (tiles_in_flight,
 /// render/frame.cpp), each in the renderer's and the writer's form; of small ones more are, which
 /// weigh little.
@@ -115,6 +119,8 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           spheres * kSphereStepBytes +
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
+    if (scene.render.channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
+    if (scene.render.channels.motion) bytes += plan.bodies * kNeighbourStates * kStateBytes;
     if (scene.camera.shutter > 0)
         bytes +=
             plan.bodies * (kPictureBytes * render::most_intervals(plan.bodies) +

@@ -59,6 +59,7 @@ Json to_json(const FilmReport& r) {
             {"shadow_rays", r.stats.shadow_rays},
             {"bounce_rays", r.stats.bounce_rays},
             {"invalid_samples", r.stats.invalid_samples},
+            {"clamped_pixels", r.stats.clamped_pixels},
             {"distance_evaluations", r.stats.distance_evaluations},
             {"seconds", r.seconds}};
 }

@@ -219,7 +219,11 @@ TestScene everything() {
     scene.settings.filter = FilterKind::kGaussian;
     scene.settings.filter_width = 2.5;
     scene.settings.tile = 16;
-    scene.settings.channels.variance = scene.settings.channels.samples = true;
+    Channels& channels = scene.settings.channels;
+    channels.variance = channels.samples = true;
+    channels.motion = channels.zplanar = channels.normal3 = channels.light = true;
+    scene.next = {*scene.closing, random_camera(random, 6)};
+    scene.last = {scene.bodies, random_camera(random, 6)};
     return scene;
 }
 

@@ -27,6 +27,7 @@ struct TestScene {
     std::optional<Bodies> closing;                 ///< poses when the shutter closes, after 1 s
     mutable std::vector<ShutterMoment> path = {};  ///< or what the shutter sees
     int frame = 0;
+    std::optional<Neighbour> next = {}, last = {};
 
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
                std::uint32_t material = 0);
@@ -35,6 +36,8 @@ struct TestScene {
         picture.frame = frame;
         if (closing) path = {{1, *closing, camera}};
         picture.path = path;
+        picture.next = next ? &*next : nullptr;
+        picture.last = last ? &*last : nullptr;
         return picture;
     }
 };

@@ -53,6 +53,16 @@ TEST(Timeline, FrameBetweenStepsNeedsBoth) {
     EXPECT_EQ(steps_for_frames(scene, {0, 1, 3}), (std::vector<std::uint64_t>{0, 3, 4, 10}));
 }
 
+TEST(Timeline, VectorsOfMotionAskForTheStepsOfTheFramesBeside) {
+    Scene scene = scene_of(1, 240, 30);  // 8 steps a frame, frames 0 to 29
+    scene.render.channels.motion = true;
+    EXPECT_EQ(steps_needed(scene, {5}), (std::vector<std::uint64_t>{32, 40, 48}));
+    EXPECT_EQ(steps_needed(scene, {0}), (std::vector<std::uint64_t>{0, 8}));
+    EXPECT_EQ(steps_needed(scene, {29}), (std::vector<std::uint64_t>{224, 232}));
+    scene.render.frames_per_second = 100;  // 2.4 steps a frame
+    EXPECT_EQ(steps_needed(scene, {1}), (std::vector<std::uint64_t>{0, 2, 3, 4, 5}));
+}
+
 TEST(Timeline, AnOpenShutterAsksForTheStepsInside) {
     Scene scene = scene_of(1, 240, 30);  // 8 steps a frame
     EXPECT_TRUE(shutter_steps(scene, 1).empty());

@@ -22,5 +22,20 @@ TEST(InvalidSamples, AreReportedWithACommandThatRendersTheLowestAgain) {
         "--frames 7 --crop 8,5,9,6 -o DIR");
 }
 
+TEST(ClampedPixels, AreReportedWithACommandThatRendersTheLowestAgain) {
+    Scene scene;
+    scene.file = "dir/drop.toml";
+    render::FrameStats stats;
+    EXPECT_EQ(clamped_pixels_text(stats, scene, 7), "");
+    stats.count_clamped({5, 9, 0}, 1);
+    render::FrameStats other;
+    other.count_clamped({5, 8, 0}, 2);
+    stats += other;
+    EXPECT_EQ(clamped_pixels_text(stats, scene, 7),
+              "dir/drop.toml: frame 7: 3 pixels have a colour beyond 65504, the most that a half "
+              "holds, and are stored as that; weaker lights mend it; the first is pixel 8,5; to "
+              "render it alone: tesserae render dir/drop.toml --frames 7 --crop 8,5,9,6 -o DIR");
+}
+
 }  // namespace
 }  // namespace tesserae::scenes

@@ -102,6 +102,15 @@ TEST(LoadScene, EmptyTableHasAllDefaults) {
     EXPECT_EQ(scene.hash.size(), 32U);
 }
 
+TEST(LoadScene, ReadsChannelsForCompositing) {
+    const Scene scene =
+        load_text("[render]\nchannels = [\"motion\", \"zplanar\", \"normal3\", \"light\"]");
+    const render::Channels& c = scene.render.channels;
+    EXPECT_TRUE(c.motion && c.zplanar && c.normal3 && c.light);
+    EXPECT_FALSE(c.color || c.depth || c.normal || c.albedo || c.id);
+    EXPECT_FALSE(load_text("[scene]").render.channels.any_layer());
+}
+
 TEST(LoadScene, ReadsEverything) {
     const Scene scene = load_text(kRich);
     EXPECT_EQ(scene.name, "rich");

@@ -1,4 +1,5 @@
 // What a film with an open shutter takes from its trajectory.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
