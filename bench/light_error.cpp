@@ -91,7 +91,7 @@ class Rays {
         const render::ViewSample from = {
             surfaces_[i] ? &*surfaces_[i] : nullptr, {Vec4::Zero(), directions_[i]}, sampler};
         render::Color color;
-        integrator_->radiance({&from, 1}, {&color, 1}, stats_);
+        integrator_->radiance({&from, 1}, {&color, 1}, wave_, stats_);
         return color[0];
     }
 
@@ -130,6 +130,7 @@ class Rays {
     std::vector<Vec4> directions_;
     std::vector<std::optional<render::Surface>> surfaces_;
     render::FrameStats stats_;
+    render::PathWave wave_;
 };
 
 std::vector<double> exact_values(const Setting& setting) {

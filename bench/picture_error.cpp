@@ -167,7 +167,7 @@ class Light {
         const auto surface = hit ? std::optional(opening.shading.surface(hit, ray)) : std::nullopt;
         const ViewSample from = {surface ? &*surface : nullptr, ray, sampler};
         Color color;
-        opening.integrator->radiance({&from, 1}, {&color, 1}, stats_);
+        opening.integrator->radiance({&from, 1}, {&color, 1}, wave_, stats_);
         return color;
     }
 
@@ -176,6 +176,7 @@ class Light {
     FrameScene frame_;
     RayScene rays_;
     FrameStats stats_;
+    PathWave wave_;
 };
 
 /// Means of a pixel's samples; independent ones are the first samples of as many pixels.

@@ -9,7 +9,8 @@ namespace tesserae::render {
 /// while the shutter is open bodies turn at their angular velocities.
 /// 3: rays have no end unless max_distance is given, which holds for all rays; filters wider than a
 /// pixel lose nothing; a camera may stand in glass; of overlapping glass the last body rules.
-/// 4: every sample has a time of its own while the shutter is open.
+/// 4: every sample has a time of its own while the shutter is open; paths take directions by
+/// functions of our own in place of the C library's, so their noise is another.
 constexpr int kPictureVersion = 4;
 
 }  // namespace tesserae::render

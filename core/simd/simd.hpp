@@ -31,6 +31,15 @@ using Mask4 = long long __attribute__((vector_size(4 * sizeof(long long))));
 [[gnu::always_inline]] inline Float8 all_lanes(float x) { return Float8{x, x, x, x, x, x, x, x}; }
 [[gnu::always_inline]] inline Double4 all_four(double x) { return Double4{x, x, x, x}; }
 
+/// By the bits: from numbers of one kind to as many of another, of the same size.
+template <class To, class From>
+[[gnu::always_inline]] inline To same_bits(From from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
+}
+
 /// The larger of both; b where they are equal or one is no number.
 template <class V>
 [[gnu::always_inline]] inline V larger(V a, V b) {
@@ -58,6 +67,16 @@ template <class V>
     return _mm256_sqrt_ps(x);
 #else
     for (std::size_t i = 0; i < kLanes; ++i) x[i] = std::sqrt(x[i]);
+    return x;
+#endif
+}
+
+[[gnu::always_inline]] inline double square_root(double x) { return std::sqrt(x); }
+[[gnu::always_inline]] inline Double4 square_root(Double4 x) {
+#ifdef __AVX__
+    return _mm256_sqrt_pd(x);
+#else
+    for (std::size_t i = 0; i < 4; ++i) x[i] = std::sqrt(x[i]);
     return x;
 #endif
 }

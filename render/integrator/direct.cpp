@@ -3,8 +3,9 @@
 namespace tesserae::render {
 
 void DirectIntegrator::radiance(std::span<const ViewSample> samples, std::span<Color> colors,
-                                FrameStats& stats) const {
-    PathWave wave;
+                                PathWave& wave, FrameStats& stats) const {
+    wave.paths.clear();
+    wave.live.clear();
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
         const Surface* first = samples[i].first;
         // The usual view ray ends where it is: a path of it would only take time.

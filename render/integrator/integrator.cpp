@@ -15,11 +15,6 @@ constexpr int kRouletteFrom = 4;
 /// And it goes on at most this often, so that no path runs for ever between white surfaces.
 constexpr double kSurvival = 0.95;
 
-/// Whether a direction lies in a light's disc, by chords, which keep the digits of small angles.
-bool is_in_disc(const LightDisc& disc, const Vec4& direction) {
-    return (direction - disc.toward).norm() <= 2 * std::sin(0.5 * disc.angle);
-}
-
 }  // namespace
 
 std::unique_ptr<const LightIntegrator> make_integrator(const Picture& picture,
@@ -39,15 +34,11 @@ LightIntegrator::LightIntegrator(const Picture& picture, const PlacedBodies& pla
     if (needs.bounce_rays || needs.moving) scene_.emplace(placed, tree, picture.settings);
 }
 
-void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const {
+void LightIntegrator::begin(PathWave& wave, const ViewSample& sample, std::uint32_t number) const {
     wave.live.push_back(static_cast<std::uint32_t>(wave.paths.size()));
-    LightPath& path = wave.paths.emplace_back(LightPath{sample.ray, sample.sampler, index});
-    if (sample.first) path.surface = *sample.first;
-    path.medium = sample.start.medium;
-    path.is_exit = sample.start.is_exit;
+    LightPath& path = wave.paths.emplace_back(sample, number);
     path.ray.limit = sample.first ? sample.first->distance : kMiss;
     path.light = lights_.first_sphere(path.ray).sphere;
-    path.direct = sample.direct;
     if (path.direct) *path.direct = Color::Zero();
 }
 
@@ -58,6 +49,7 @@ void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
         if (!wave.paths[i].is_in_glass()) wave.rays.push_back(wave.paths[i].ray);
     wave.hits.resize(wave.rays.size());
     if (!wave.rays.empty()) scene_->nearest(wave.rays, wave.hits, stats);
+    if (wave.surfaces.size() < wave.paths.size()) wave.surfaces.resize(wave.paths.size());
 
     auto hit = wave.hits.begin();
     for (const std::uint32_t i : wave.live) {
@@ -65,8 +57,11 @@ void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
         const GlassBodies::Event event = path.is_in_glass()
                                              ? glass_.next(path.medium, path.ray, stats)
                                              : GlassBodies::Event{glass_.ruling(*hit++, path.ray)};
-        path.surface.reset();
-        if (event.hit) path.surface = shading_.surface(event.hit, path.ray);
+        path.surface = nullptr;
+        if (event.hit) {
+            shading_.find_surface(event.hit, path.ray, wave.surfaces[i]);
+            path.surface = &wave.surfaces[i];
+        }
         path.is_exit = event.is_exit;
         path.ray.limit = event.hit.distance;
         path.light = lights_.first_sphere(path.ray).sphere;
@@ -79,8 +74,8 @@ Color LightIntegrator::light_seen(const LightPath& path, double chosen) const {
     Color light = lights_.sky;
     if (path.is_view) return light;
     for (const SunDisc& sun : lights_.suns)
-        if (sun.angle > 0 && is_in_disc(sun, path.ray.direction))
-            light += power_weight(path.density, 1 / cap_solid_angle(sun.angle)) * sun.radiance;
+        if (sun.angle > 0 && (path.ray.direction - sun.toward).squaredNorm() <= sun.squared_chord)
+            light += power_weight(path.density, 1 / sun.cap.solid_angle()) * sun.radiance;
     return light;
 }
 

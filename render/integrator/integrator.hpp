@@ -34,22 +34,33 @@ struct ViewSample {
 /// Light followed from the viewer back: the ray that it has come to, what that meets (a surface, a
 /// light, or neither: the sky), and what it has brought so far.
 struct LightPath {
+    /// @param number   of the view ray
+    LightPath(const ViewSample& view, std::uint32_t number)
+        : ray(view.ray),
+          sampler(view.sampler),
+          sample(number),
+          medium(view.start.medium),
+          surface(view.first),
+          is_exit(view.start.is_exit),
+          direct(view.direct) {}
+
     Ray ray;
     Sampler sampler;
-    std::uint32_t sample;                       ///< whose view ray it began with
-    std::uint32_t medium = GlassBodies::kNone;  ///< the glass that the ray is in
+    std::uint32_t sample;  ///< whose view ray it began with
+    std::uint32_t medium;  ///< the glass that the ray is in
     /// Of the choice of the ray's direction, where lights were chosen as well; else 0.
     double density = 0;
     Vec4 normal = Vec4::Zero();  ///< of the surface that the ray comes from
     bool is_view = true;
 
-    std::optional<Surface> surface{};
-    bool is_exit = false;  ///< the surface is met from inside, out of the medium
+    const Surface* surface;
+    bool is_exit;  ///< the surface is met from inside, out of the medium
     std::uint32_t light = LightSet::kNone;
 
     Color sum = Color::Zero(), throughput = Color::Ones();
+    Color from_lights = Color::Zero();  ///< what the surface sends on of what lights bring to it
     /// Where asked for: the part of the sum that is no indirect light (see since_rough).
-    Color* direct = nullptr;
+    Color* direct;
     /// Scatterings since the first surface that is no mirror or glass, with that one's. What such a
     /// surface gets from a light or from what glows is direct, what comes farther not.
     int since_rough = 0;
@@ -58,13 +69,24 @@ struct LightPath {
     bool meets_surface() const { return surface && light == LightSet::kNone; }
 };
 
+/// What a light brings to a path's surface if nothing stands between them.
+struct Lighting {
+    std::uint32_t path;
+    Color light;  ///< sent on toward the viewer
+};
+
 /// Paths that are followed side by side, since their rays are traced faster so. None changes what
-/// another one brings.
+/// another one brings. It keeps its memory from one use to the next.
 struct PathWave {
     std::vector<LightPath> paths;
     std::vector<std::uint32_t> live;  ///< the paths that go on, ascending
     std::vector<Ray> rays;            ///< of those outside glass; with their hits
     std::vector<Hit> hits;
+    std::vector<Surface> surfaces;  ///< by path: what its last ray met
+    std::vector<Ray> light_rays;    ///< toward lights, up to them; with what they bring
+    std::vector<Lighting> lightings;
+    std::vector<std::uint8_t> blocked;
+    std::vector<std::uint32_t> lit;  ///< the live paths whose surfaces get light from lights
 };
 
 /// The radiance along view rays. A ray is followed from surface to surface: mirrors and glass send
@@ -81,8 +103,9 @@ class LightIntegrator {
     virtual ~LightIntegrator() = default;
 
     /// @param colors   as many as samples; what a sample's `direct` gets is no more than its colour
+    /// @param wave     to work in
     virtual void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
-                          FrameStats& stats) const = 0;
+                          PathWave& wave, FrameStats& stats) const = 0;
 
     /// What view rays begin in and go into, for who traces them; and, while something moves, what
     /// they meet.
@@ -91,7 +114,7 @@ class LightIntegrator {
 
   protected:
     /// Adds the path of a view ray, arrived where that arrives.
-    void begin(PathWave& wave, const ViewSample& sample, std::uint32_t index) const;
+    void begin(PathWave& wave, const ViewSample& sample, std::uint32_t number) const;
     /// Follows the rays of the live paths to what they meet.
     void trace(PathWave& wave, FrameStats& stats) const;
     /// Radiance of the light or the sky that a path's ray ends in, weighted against the choice of
@@ -124,7 +147,7 @@ class LightIntegrator {
 class DirectIntegrator : public LightIntegrator {
   public:
     using LightIntegrator::LightIntegrator;
-    void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
+    void radiance(std::span<const ViewSample> samples, std::span<Color> colors, PathWave& wave,
                   FrameStats& stats) const override;
 
   private:
@@ -144,28 +167,33 @@ class PathIntegrator : public LightIntegrator {
   public:
     PathIntegrator(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
                    const LightSet& lights, const Shading& shading);
-    void radiance(std::span<const ViewSample> samples, std::span<Color> colors,
+    void radiance(std::span<const ViewSample> samples, std::span<Color> colors, PathWave& wave,
                   FrameStats& stats) const override;
 
   private:
-    bool scatter(LightPath& path, int scattered, FrameStats& stats) const;
+    bool arrive(LightPath& path, int scattered) const;
+    void light(PathWave& wave, int scattered, FrameStats& stats) const;
+    void scatter(PathWave& wave, int scattered) const;
     /// Adds light that comes to where a path has arrived; indirect light is clamped.
     void add(LightPath& path, const Color& light, bool is_indirect) const;
-    Color light_of_points(const Surface& surface, const Bsdf& bsdf, FrameStats& stats) const;
+    /// Shadow rays from a path's surface, with what they bring, into the wave:
+    void aim_at_points(PathWave& wave, std::uint32_t path, const Bsdf& bsdf) const;
+    /// From all paths that are lit.
     /// @param group   of the sampler's numbers: the first of one for each light
-    Color light_of_suns_and_lamps(const Surface& surface, const Bsdf& bsdf, const Sampler& sampler,
-                                  std::uint32_t group, FrameStats& stats) const;
-    /// Through a random point of a disc of even radiance.
+    void aim_at_suns(PathWave& wave, std::uint32_t group) const;
+    void aim_at_lamps(PathWave& wave, std::uint32_t path, const Bsdf& bsdf, std::uint32_t group,
+                      FrameStats& stats) const;
+    /// Through a point of a disc of even radiance.
+    /// @param in       toward it, world axes
+    /// @param angle    solid angle of the disc over the chance that it was chosen
     /// @param source   the sphere light that it is, or kNone
-    /// @param chance   that it was chosen
-    Color light_of_disc(const Surface& surface, const Bsdf& bsdf, const LightDisc& disc,
-                        const Color& radiance, std::uint32_t source, double chance,
-                        const Uniform3& u, FrameStats& stats) const;
-    Color light_of_body(const Surface& surface, const Bsdf& bsdf, const Lamp& lamp, double chance,
-                        const Uniform3& u, FrameStats& stats) const;
+    void aim_at_disc(PathWave& wave, std::uint32_t path, const Bsdf& bsdf, const Vec4& in,
+                     double angle, const Color& radiance, std::uint32_t source) const;
+    void aim_at_body(PathWave& wave, std::uint32_t path, const Bsdf& bsdf, const Lamp& lamp,
+                     double chance, const Uniform3& u, FrameStats& stats) const;
+    void aim(PathWave& wave, std::uint32_t path, Ray ray, const Color& light) const;
     /// With which the choice of lamps gives the direction of a path's ray, toward what it meets.
     double lamp_density(const LightPath& path) const;
-    bool is_lit(const Ray& toward_light, FrameStats& stats) const;
 
     const PlacedBodies& placed_;
     Lamps lamps_;

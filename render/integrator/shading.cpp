@@ -35,26 +35,24 @@ Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyT
     if (needs_of(picture).shadow_rays) shadows_.emplace(placed, tree, picture.settings.ray_limit());
 }
 
-Surface Shading::surface(const Hit& hit, const Ray& ray) const {
+void Shading::find_surface(const Hit& hit, const Ray& ray, Surface& s) const {
     const PlacedBody& body = placed_.bodies[hit.body];
-    const Vec4 point = ray.at(hit.distance);
-    const Vec4 local = placed_.point_to_body(body, point, ray.time);
-    const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
+    s.distance = hit.distance;
+    s.body = hit.body;
+    s.point = ray.at(hit.distance);
+    const Vec4 local = placed_.point_to_body(body, s.point, ray.time);
+    const Vec4 out =
+        std::visit([&](const auto& shape) { return normal(shape, local); }, *body.shape);
     const std::uint32_t type = picture_.bodies.type[body.id];
     const Material& material = picture_.materials[picture_.appearance[type].material];
-    Surface s = {hit.distance,
-                 hit.body,
-                 point,
-                 placed_.direction_to_world(body, out, ray.time),
-                 {},
-                 &material,
-                 rough_.of(material),
-                 ray.time};
+    s.normal = placed_.direction_to_world(body, out, ray.time);
+    s.material = &material;
+    s.rough = rough_.of(material);
+    s.time = ray.time;
     s.albedo = material.pattern == Pattern::kNone
                    ? material.albedo
                    : albedo_at(material, local - pattern_origin(*body.shape) -
                                              kPatternDepth * material.pattern_size * out);
-    return s;
 }
 
 Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) const {

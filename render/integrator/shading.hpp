@@ -28,7 +28,12 @@ class Shading {
             const LightSet& lights, const RoughReflections& rough);
 
     /// Where a ray meets a body.
-    Surface surface(const Hit& hit, const Ray& ray) const;
+    void find_surface(const Hit& hit, const Ray& ray, Surface& surface) const;
+    Surface surface(const Hit& hit, const Ray& ray) const {
+        Surface s;
+        find_surface(hit, ray, s);
+        return s;
+    }
 
     /// Radiance that leaves the surface toward the viewer: its emission, plus the sum over the
     /// lights of BRDF * irradiance * visibility, plus albedo times the sky's radiance. The BRDF of

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/shape/hypersphere.hpp"
-#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -29,6 +28,10 @@ SunDisc sun_disc(const Sun& sun) {
     SunDisc disc = {
         {-sun.direction, angle, {std::sin(angle), std::cos(angle)}}, sun.irradiance, Color::Zero()};
     if (angle > 0) disc.radiance = sun.irradiance / cap_irradiance(angle, pi / 2);
+    disc.cap = Cap(angle);
+    disc.frame = TangentFrame(disc.toward);
+    const double half = std::sin(0.5 * angle);
+    disc.squared_chord = 4 * half * half;
     return disc;
 }
 
@@ -98,7 +101,7 @@ void LightSet::add_balls(std::span<std::uint32_t> some) {
     balls_[own].past = static_cast<std::uint32_t>(balls_.size());
 }
 
-LightSet::Seen LightSet::first_sphere(const Ray& ray) const {
+LightSet::Seen LightSet::first_ball(const Ray& ray) const {
     Seen seen;
     const auto can_meet = [&](const Ball& ball) {
         const Vec4 to = ball.centre - ray.origin;

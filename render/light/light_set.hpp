@@ -6,6 +6,7 @@
 
 #include "render/description.hpp"
 #include "render/ray.hpp"
+#include "render/sampling/cap.hpp"
 
 namespace tesserae::render {
 
@@ -21,6 +22,9 @@ struct LightDisc {
 struct SunDisc : LightDisc {
     Color irradiance;  ///< on a facing surface
     Color radiance;    ///< of the disc: irradiance/((4 pi/3) sin^3 angle); 0 for a hard sun
+    Cap cap{};         ///< its directions, about the last axis of
+    TangentFrame frame{};
+    double squared_chord = 0;  ///< of the half-angle: keeps the digits of small ones
 };
 SunDisc sun_disc(const Sun& sun);
 
@@ -55,7 +59,7 @@ struct LightSet {
     };
     /// The nearest sphere light that a ray meets before its limit; of equally near ones that of the
     /// lowest index.
-    Seen first_sphere(const Ray& ray) const;
+    Seen first_sphere(const Ray& ray) const { return balls_.empty() ? Seen{} : first_ball(ray); }
 
   private:
     /// A ball about some of the spheres, followed by those within it: a tree, depth first.
@@ -66,6 +70,7 @@ struct LightSet {
         std::uint32_t past;    ///< the ball after those within this one
     };
     void add_balls(std::span<std::uint32_t> spheres);
+    Seen first_ball(const Ray& ray) const;
 
     std::vector<Ball> balls_;
 };

@@ -34,23 +34,23 @@ class BallCap {
         squared_sine_ = sine * sine;
         // 2 (1 - cosine), which keeps the digits of small angles.
         chord_ = 2 * squared_sine_ / (1 + std::sqrt((1 - sine) * (1 + sine)));
-        angle_ = std::asin(sine);
-        solid_angle_ = cap_solid_angle(angle_);
+        cap_ = Cap(std::asin(sine));
     }
     bool is_outside() const { return is_outside_; }
-    double solid_angle() const { return is_outside_ ? solid_angle_ : 0; }
+    double solid_angle() const { return is_outside_ ? cap_.solid_angle() : 0; }
     double squared_sine() const { return squared_sine_; }
     Vec4 direction(const Uniform3& u) const {
-        return TangentFrame(toward_).to_world(cap_direction(angle_, u));
+        return TangentFrame(toward_).to_world(cap_.direction(u));
     }
-    double density() const { return 1 / solid_angle_; }
+    double density() const { return 1 / cap_.solid_angle(); }
     bool holds(const Vec4& direction) const {
         return is_outside_ && (direction - toward_).squaredNorm() <= chord_;
     }
 
   private:
     Vec4 toward_ = Vec4::Zero();
-    double distance_ = 0, angle_ = 0, solid_angle_ = 0;
+    double distance_ = 0;
+    Cap cap_;
     double squared_sine_ = 0, chord_ = 0;  ///< chord_: squared, of the angle
     bool is_outside_ = false;
 };

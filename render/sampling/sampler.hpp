@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/simd/simd.hpp"
 #include "render/camera/camera.hpp"
 
 namespace tesserae::render {
@@ -52,8 +53,13 @@ class Sampler {
         return other;
     }
     std::array<double, 4> group(std::uint32_t group) const;
+    /// The same of four samples at once, number by number: [k][i] is samplers[i]->group(group)[k].
+    static std::array<simd::Double4, 4> groups(const std::array<const Sampler*, 4>& samplers,
+                                               std::uint32_t group);
 
   private:
+    struct Seeds;
+
     std::uint64_t pixel_;  ///< a hash of pixel and pattern
     std::uint32_t index_;
 };

@@ -191,7 +191,7 @@ double GlassBodies::depth(std::uint32_t body, const Vec4& point, double time) co
     return -distance_of(placed_, placed_.bodies[body], point, time) / scale(body, point);
 }
 
-Hit GlassBodies::ruling(Hit hit, const Ray& ray) const {
+Hit GlassBodies::ruling_of_all(const Hit& hit, const Ray& ray) const {
     if (!hit || !is_glass(hit.body)) return hit;
     const auto& others = neighbours_[slot_[hit.body]];
     const Vec4 point = ray.at(hit.distance);

@@ -45,7 +45,9 @@ class GlassBodies {
 
     /// Where a ray goes into several bodies of glass in one place, the hit on the one that rules
     /// there; other hits stay as they are.
-    Hit ruling(Hit hit, const Ray& ray) const;
+    Hit ruling(const Hit& hit, const Ray& ray) const {
+        return is_empty() ? hit : ruling_of_all(hit, ray);
+    }
 
     /// Where a ray that leaves a glass body outward begins, so that it is clear of others whose
     /// surfaces lie in the same place: a ray is `on` one body only. Else the point itself.
@@ -60,6 +62,7 @@ class GlassBodies {
     std::uint32_t hidden_in(std::uint32_t body) const;
 
   private:
+    Hit ruling_of_all(const Hit& hit, const Ray& ray) const;
     double scale(std::uint32_t body, const Vec4& point) const;
     double depth(std::uint32_t body, const Vec4& point, double time) const;
     double distance_from(const PlacedBody& body, const Vec4& point) const;

@@ -55,24 +55,34 @@ Span inside_sphere(const Vec4& origin, const Vec4& direction, double radius) {
 
 }  // namespace
 
+template <class S>
+double hit_distance(const S& shape, const Vec4& origin, const Vec4& direction, double limit,
+                    const Settings& settings, FrameStats& stats) {
+    if (settings.intersector == Intersector::kAnalytic) {
+        const double t = ray_hit(shape, origin, direction);
+        return t <= limit ? t : kMiss;
+    }
+    double start = 0, end = limit;
+    if constexpr (S::kBounded) {
+        const Span inside = inside_sphere(origin, direction, bounding_radius(shape));
+        start = std::max(start, inside.start);
+        end = std::min(end, inside.end + kOnSurface * inside.end);
+        if (start > end) return kMiss;
+    }
+    return trace(shape, origin, direction, start, end, settings.max_steps, stats);
+}
+template double hit_distance(const Hypersphere&, const Vec4&, const Vec4&, double, const Settings&,
+                             FrameStats&);
+template double hit_distance(const Hyperbox&, const Vec4&, const Vec4&, double, const Settings&,
+                             FrameStats&);
+
 double hit_distance(const PlacedBodies& placed, std::uint32_t index, const Ray& ray,
                     const Settings& settings, FrameStats& stats) {
     const PlacedBody& body = placed.bodies[index];
     const auto in_frame = [&](const Vec4& o, const Vec4& d) {
         return std::visit(
             [&](const auto& shape) {
-                if (settings.intersector == Intersector::kAnalytic) {
-                    const double t = ray_hit(shape, o, d);
-                    return t <= ray.limit ? t : kMiss;
-                }
-                double start = 0, end = ray.limit;
-                if constexpr (std::decay_t<decltype(shape)>::kBounded) {
-                    const Span inside = inside_sphere(o, d, body.radius);
-                    start = std::max(start, inside.start);
-                    end = std::min(end, inside.end + kOnSurface * inside.end);
-                    if (start > end) return kMiss;
-                }
-                return trace(shape, o, d, start, end, settings.max_steps, stats);
+                return hit_distance(shape, o, d, ray.limit, settings, stats);
             },
             *body.shape);
     };

@@ -16,4 +16,9 @@ namespace tesserae::render {
 double hit_distance(const PlacedBodies& placed, std::uint32_t body, const Ray& ray,
                     const Settings& settings, FrameStats& stats);
 
+/// The same in a shape's own frame: of a hypersphere or a hyperbox, the usual ones.
+template <class S>
+double hit_distance(const S& shape, const Vec4& origin, const Vec4& direction, double limit,
+                    const Settings& settings, FrameStats& stats);
+
 }  // namespace tesserae::render

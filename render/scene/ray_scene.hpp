@@ -6,6 +6,7 @@
 
 #include "render/scene/body_tree.hpp"
 #include "render/scene/intersect.hpp"
+#include "render/scene/ray_stream.hpp"
 
 namespace tesserae::render {
 
@@ -26,12 +27,19 @@ class RayScene {
         return hit;
     }
 
-    /// Whether the ray meets any body.
-    bool is_blocked(const Ray& ray, FrameStats& stats) const;
+    /// Whether each ray meets any body before its limit; sixteen rays at a time as well.
+    /// @param blocked   as many as rays
+    void find_blocked(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                      FrameStats& stats) const;
+    bool is_blocked(const Ray& ray, FrameStats& stats) const {
+        std::uint8_t blocked;
+        find_blocked({&ray, 1}, {&blocked, 1}, stats);
+        return blocked != 0;
+    }
 
   private:
-    /// What the closed form of a usual body needs, in one and in three lines of a CPU's cache: to
-    /// gather it from PlacedBodies and Shape takes as long as the test itself.
+    /// What the test of a usual body needs, in one and in three lines of a CPU's cache: to gather
+    /// it from PlacedBodies and Shape takes as long as the test itself.
     struct alignas(64) Ball {
         Vec4 centre;
         Hypersphere shape;
@@ -48,12 +56,17 @@ class RayScene {
     };
 
     void nearest_in_stream(std::span<Ray> rays, std::span<Hit> hits, FrameStats& stats) const;
+    void find_blocked_in_stream(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                                FrameStats& stats) const;
+    template <class LeavesOut, class Take>
+    void test_bodies(RayStream& stream, std::span<const Ray> rays, LeavesOut&& leaves_out,
+                     Take&& take, FrameStats& stats) const;
     void prefetch(const Slot& slot) const;
 
     const PlacedBodies& placed_;
     const BodyTree& tree_;
     const Settings& settings_;
-    std::vector<Slot> slots_;  ///< by body; where bodies are sphere traced all are others
+    std::vector<Slot> slots_;  ///< by body
     std::vector<Ball> balls_;
     std::vector<Box> boxes_;
 };

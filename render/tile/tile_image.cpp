@@ -17,9 +17,9 @@
 namespace tesserae::render {
 namespace {
 
-/// View rays that are traced together; more while something moves, as only those of one interval
-/// go side by side.
-constexpr int kBatch = 16, kMovingBatch = 64;
+/// View rays that are traced together, with what comes along them: many, as side by side they take
+/// less time, and while something moves only those of one interval go so.
+constexpr int kBatch = 64;
 /// The group of a sample's numbers that the camera uses; scattering counts from 0.
 constexpr std::uint32_t kCameraGroup = 0xffffffffu;
 /// The largest finite half.
@@ -38,7 +38,10 @@ struct View {
     const Interval* interval;
     ViewRay in_slice;  ///< of the opening; of other times none
     Ray ray;
-    std::optional<Surface> surface;
+    bool is_met = false;
+    Surface met;
+
+    const Surface* surface() const { return is_met ? &met : nullptr; }
 };
 
 /// A sample's numbers for lens, slice and time.
@@ -126,18 +129,19 @@ class TileRays {
     std::vector<GlassStart> starts_;  ///< empty where nothing is of glass
     std::vector<ViewSample> samples_;
     std::vector<Color> colors_, direct_;
+    PathWave wave_;
     CentreLayers layers_;
 };
 
 void store_view(const View& view, const Camera& camera, Pixel& pixel) {
-    if (!view.surface) return;
-    const Vec4 position = view.surface->point + camera.origin();
+    if (!view.is_met) return;
+    const Vec4 position = view.met.point + camera.origin();
     for (int i = 0; i < 4; ++i) {
-        pixel.normal[i] = static_cast<float>(view.surface->normal[i]);
+        pixel.normal[i] = static_cast<float>(view.met.normal[i]);
         pixel.position[i] = static_cast<float>(position[i]);
     }
-    pixel.depth = static_cast<float>(view.surface->distance);
-    pixel.id = view.interval->placed.bodies[view.surface->body].id + 1;
+    pixel.depth = static_cast<float>(view.met.distance);
+    pixel.id = view.interval->placed.bodies[view.met.body].id + 1;
 }
 
 Averages averages_of(const Filtered& sum) {
@@ -223,7 +227,7 @@ Pixel TileRays::pixel(int x, int y, LayerPixel* layers) {
 }
 
 void TileRays::store_layers(const View& view, LayerPixel& layers) const {
-    const Surface* surface = view.surface ? &*view.surface : nullptr;
+    const Surface* surface = view.surface();
     const BodyId body = surface ? view.interval->placed.bodies[surface->body].id : 0;
     layers_.store(view.ray, surface, body, layers);
 }
@@ -271,9 +275,8 @@ Averages TileRays::adapted(const Cell& cell, int x, int y) {
 void TileRays::add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x,
                            int y) {
     const std::uint64_t hash = pixel_hash(x, y, half.pattern);
-    const int batch = scene_.is_still() ? kBatch : kMovingBatch;
     while (sum.count < count) {
-        const int begin = sum.count, end = std::min(begin + batch, count);
+        const int begin = sum.count, end = std::min(begin + kBatch, count);
         views_.clear();
         if (scene_.is_pinhole())
             add_samples_from_pinhole(cell, x, y, hash, begin, end);
@@ -347,8 +350,8 @@ void TileRays::trace(bool is_opening) {
     }
     if (!scene_.opening().integrator->glass().is_empty()) look_out_of_glass();
     for (std::size_t i = 0; i < views_.size(); ++i)
-        if (hits_[i])
-            views_[i].surface = views_[i].interval->shading.surface(hits_[i], views_[i].ray);
+        if ((views_[i].is_met = bool(hits_[i])))
+            views_[i].interval->shading.find_surface(hits_[i], views_[i].ray, views_[i].met);
 }
 
 void TileRays::trace_moving() {
@@ -381,9 +384,9 @@ void TileRays::look_out_of_glass() {
 void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
     for (const View& view : views_) {
         ++sum.count;
-        if (!view.surface) continue;
+        if (!view.is_met) continue;
         sum.alpha += 1;
-        sum.albedo += view.surface->albedo;
+        sum.albedo += view.met.albedo;
     }
     if (!scene_.wants_color()) return;
     find_radiance(Sampler(x, y, 0, half.pattern));
@@ -404,8 +407,7 @@ void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
 void TileRays::find_radiance(const Sampler& sampler) {
     samples_.clear();
     for (const View& view : views_)
-        samples_.push_back(
-            {view.surface ? &*view.surface : nullptr, view.ray, sampler.of(view.number)});
+        samples_.push_back({view.surface(), view.ray, sampler.of(view.number)});
     for (std::size_t i = 0; i < starts_.size(); ++i) samples_[i].start = starts_[i];
     colors_.resize(views_.size());
     if (settings_.channels.light) {
@@ -414,7 +416,7 @@ void TileRays::find_radiance(const Sampler& sampler) {
     }
     for_each_interval([&](const Interval& interval, std::size_t begin, std::size_t end) {
         interval.integrator->radiance(std::span(samples_).subspan(begin, end - begin),
-                                      std::span(colors_).subspan(begin, end - begin), stats);
+                                      std::span(colors_).subspan(begin, end - begin), wave_, stats);
     });
 }
 

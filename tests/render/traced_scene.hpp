@@ -54,7 +54,8 @@ struct TracedScene {
         if (event.hit) met = shading.surface(event.hit, ray);
         const ViewSample sample = {met ? &*met : nullptr, ray, sampler, {medium, event.is_exit}};
         Color color;
-        integrator->radiance({&sample, 1}, {&color, 1}, stats);
+        PathWave wave;
+        integrator->radiance({&sample, 1}, {&color, 1}, wave, stats);
         return color;
     }
 };

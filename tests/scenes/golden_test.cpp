@@ -96,9 +96,9 @@ std::string hash_of_content(const std::string& path) {
 TEST_F(Golden, GalleryScenesLookAsEver) {
     const std::pair<const char*, const char*> stills[] = {
         {"sheet", "7b695b55e69d6fcfaf81bc118cd981c7"},
-        {"glass", "f4a9bff15fbe969185d6565854c2acb3"},
-        {"room", "c105578a3ec7c2e41f761346f8d31f82"},
-        {"lens", "943ee0a7adaa0ed11136942e1e70a07b"},
+        {"glass", "547bf93a91acfa77ce7c700d861d33e0"},
+        {"room", "7f56164d8cee6b373655ff41cdd68420"},
+        {"lens", "b3525954a0cbceb8ae420329eb4f9668"},
         {"turn", "d730830bf3bcedec6d45b0377bb49f93"}};
     const testing::Folder folder("golden");
     for (const auto& [name, hash] : stills) {

@@ -386,7 +386,8 @@ TEST(Path, PathsSideBySideBringWhatEachBringsAlone) {
             expected.push_back(traced.radiance(ray.direction, sampler));
         }
         std::vector<Color> found(kPaths);
-        traced.integrator->radiance(samples, found, traced.stats);
+        PathWave wave;
+        traced.integrator->radiance(samples, found, wave, traced.stats);
         for (std::size_t i = 0; i < kPaths; ++i)
             EXPECT_TRUE((found[i] == expected[i]).all()) << i << ": " << found[i].transpose();
     }

@@ -58,7 +58,7 @@ TEST(Toward, IntegratesOverTheDirectionsThatMeetTheShape) {
         for (int k = 0; k < 20'000; ++k) {
             const Uniform3 u = three(random);
             const auto toward = sample_toward(shape, origin, u);
-            const Vec4 any = frame.to_world(cap_direction(angle, u));
+            const Vec4 any = frame.to_world(Cap(angle).direction(u));
             const bool meets = toward && is_met(shape, origin, toward->direction);
             const double at = meets ? 1 / (toward->density * cap) : 0;
             const double x = meets ? (toward->direction + origin.normalized()).dot(axis) / sine : 0;

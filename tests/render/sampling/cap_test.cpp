@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -76,7 +77,7 @@ TEST(CapDirection, InvertsItsDistribution) {
     for (double angle : {1e-7, 0.01, 0.3, 1.0, 1.4, pi / 2})
         for (int i = 1; i < 1000; ++i) {
             const double u = i / 1000.0;
-            const Vec4 d = cap_direction(angle, {u, 0.3, 0.7});
+            const Vec4 d = Cap(angle).direction({u, 0.3, 0.7});
             const double polar = std::atan2(d.head<3>().norm(), d[3]);
             ASSERT_LE(polar, angle * (1 + 1e-14));
             // atan2 and the sine keep 1e-15 of the angle, whose cube root u is.
@@ -92,7 +93,7 @@ TEST(CapDirection, FillsTheCapEvenly) {
         std::vector<double> count(80);
         constexpr int kCount = 80'000;
         for (int i = 0; i < kCount; ++i) {
-            const Vec4 d = cap_direction(angle, uniforms(random));
+            const Vec4 d = Cap(angle).direction(uniforms(random));
             ASSERT_NEAR(d.norm(), 1, 1e-14);
             const double polar = std::atan2(d.head<3>().norm(), d[3]);
             const int shell =
@@ -103,6 +104,54 @@ TEST(CapDirection, FillsTheCapEvenly) {
         double chi = 0;
         for (double c : count) chi += (c - 1000) * (c - 1000) / 1000;
         EXPECT_NEAR(chi, 79, 5 * 12.6) << angle;
+    }
+}
+
+/// Uniform numbers, and the ends of [0, 1) in between.
+Uniform3 any_uniforms(Random& random, int i) {
+    Uniform3 u = uniforms(random);
+    constexpr double kEnds[] = {0, 0x1p-32, 0.25, 0.5, 0.75, 1 - 0x1p-32};
+    if (i % 2) u[static_cast<std::size_t>(i / 2 % 3)] = kEnds[i / 6 % 6];
+    return u;
+}
+
+TEST(Directions, FourAtOnceAreThoseOfEach) {
+    Random random(304);
+    for (int i = 0; i < 2000; ++i) {
+        std::array<Uniform3, 4> u;
+        FourUniform3 four;
+        for (std::size_t k = 0; k < 4; ++k) {
+            u[k] = any_uniforms(random, 4 * i + static_cast<int>(k));
+            for (std::size_t n = 0; n < 3; ++n) four[n][k] = u[k][n];
+        }
+        const Cap cap(std::pow(10, uniform(random, -9, std::log10(pi / 2))));
+        const TangentFrame frame(random_direction(random));
+        const FourDirections cosines = cosine_directions(four), in_cap = cap.directions(four);
+        const FourDirections world = frame.to_world(in_cap);
+        for (std::size_t k = 0; k < 4; ++k) {
+            ASSERT_EQ(cosines[k], cosine_direction(u[k])) << i;
+            ASSERT_EQ(in_cap[k], cap.direction(u[k])) << i;
+            // The sums of products may be taken in another order.
+            ASSERT_LT((world[k] - frame.to_world(in_cap[k])).norm(), 1e-15) << i;
+            ASSERT_NEAR(in_cap[k].norm(), 1, 1e-15);
+            ASSERT_NEAR(cosines[k].norm(), 1, 1e-15);
+        }
+    }
+}
+
+TEST(Directions, AreWhereTheLibrarysFunctionsPutThem) {
+    Random random(305);
+    for (int i = 0; i < 20000; ++i) {
+        const Uniform3 u = any_uniforms(random, i);
+        // From the third axis, and round it: half a turn on from the first.
+        const double longitude = 2 * pi * u[2] - pi, z = 1 - 2 * u[1];
+        const double radius = std::cbrt(u[0]), across = std::sqrt(1 - z * z);
+        const Eigen::Vector3d ball =
+            radius * Eigen::Vector3d(across * std::cos(longitude), across * std::sin(longitude), z);
+        // Where sine or cosine turn round, their angle is known to the root of a rounding.
+        ASSERT_LT((uniform_ball(u) - ball).norm(), 5e-8) << i;
+        ASSERT_NEAR(uniform_ball(u).norm(), radius, 1e-13) << i;
+        ASSERT_LT((cosine_direction(u).head<3>() - ball).norm(), 5e-8) << i;
     }
 }
 

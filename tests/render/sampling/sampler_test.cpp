@@ -122,6 +122,24 @@ TEST(Sampler, EveryElementaryIntervalHoldsItsShare) {
         }
 }
 
+TEST(Sampler, FourSamplesAtOnceAreThoseOfEach) {
+    Random random(311);
+    for (int i = 0; i < 1000; ++i) {
+        const auto number = [&] { return static_cast<int>(uniform(random, 0, 2e9)); };
+        std::vector<Sampler> samplers;
+        for (int k = 0; k < 4; ++k)  // some of one pixel
+            samplers.emplace_back(i % 3 ? i : number(), 7 + k / (1 + i % 4),
+                                  static_cast<std::uint32_t>(i < 500 ? i + k : number()));
+        const auto group = static_cast<std::uint32_t>(i % 40);
+        const auto four =
+            Sampler::groups({&samplers[0], &samplers[1], &samplers[2], &samplers[3]}, group);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const auto one = samplers[k].group(group);
+            for (std::size_t n = 0; n < 4; ++n) ASSERT_EQ(four[n][k], one[n]) << i;
+        }
+    }
+}
+
 TEST(Sampler, LaterBlocksOfSamplesAreNetsToo) {
     // Samples 64 to 127, 128 to 191, ...: the shuffle keeps aligned blocks together.
     for (std::uint32_t block = 1; block < 5; ++block) {

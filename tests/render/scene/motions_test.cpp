@@ -159,7 +159,8 @@ std::vector<Color> light_along(const Interval& interval, const std::vector<Ray>&
         samples.push_back(
             {surfaces[i] ? &*surfaces[i] : nullptr, rays[i], Sampler(static_cast<int>(i), 0, 0)});
     }
-    interval.integrator->radiance(samples, colors, stats);
+    PathWave wave;
+    interval.integrator->radiance(samples, colors, wave, stats);
     return colors;
 }
 

@@ -43,12 +43,16 @@ void compare(const TestScene& scene, const PlacedBodies& placed, const RayScene&
 void compare_side_by_side(const RayScene& rays, Rays& count) {
     FrameStats stats;
     std::vector<Hit> hits(count.all.size());
+    std::vector<std::uint8_t> blocked(hits.size(), 2);
     for (std::size_t begin = 0, size = 1; begin < hits.size(); begin += size) {
         size = std::min(begin % 40 + 1, hits.size() - begin);
+        rays.find_blocked(std::span(count.all).subspan(begin, size),
+                          std::span(blocked).subspan(begin, size), stats);
         rays.nearest(std::span(count.all).subspan(begin, size),
                      std::span(hits).subspan(begin, size), stats);
     }
     for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_EQ(blocked[i], count.expected[i] ? 1 : 0) << i;
         ASSERT_EQ(hits[i].distance, count.expected[i].distance) << i;
         ASSERT_EQ(hits[i].body, count.expected[i].body) << i;
     }
