@@ -1,6 +1,8 @@
 #include "render/integrator/shading.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "render/picture_needs.hpp"
 
@@ -10,6 +12,9 @@ namespace {
 /// Patterns are read this part of pattern_size below the surface. Without it a face that lies on a
 /// boundary of cells would take either cell's colour, as rounding has it.
 constexpr double kPatternDepth = 1e-4;
+
+/// Lights are left out that add less than this part of a surface's light, all together.
+constexpr double kLeftOut = 1e-4;
 
 bool is_odd(double cell) { return cell - 2 * std::floor(0.5 * cell) != 0; }
 
@@ -60,15 +65,42 @@ Color Shading::radiance(const Surface& s, const Vec4& out, FrameStats& stats) co
     Color sum = s.material->emission + s.albedo * lights_.sky;
     for (const SunDisc& sun : lights_.suns)
         sum += reflected(s, bsdf, sun, s.normal.dot(sun.toward) * sun.irradiance, stats);
-    for (const PointLight& point : lights_.points) {
-        const LightAt light = LightSet::at(point, s.point, s.normal);
-        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
-    }
-    for (const SphereLight& sphere : lights_.spheres) {
-        const LightAt light = LightSet::at(sphere, s.point, s.normal);
-        sum += reflected(s, bsdf, light.disc, light.irradiance, stats);
-    }
+    add_lamps(s, bsdf, sum, stats);
     return sum;
+}
+
+/// Adds point and sphere lights, the brightest first, until all that are left could not add a ten
+/// thousandth.
+void Shading::add_lamps(const Surface& s, const Bsdf& bsdf, Color& sum, FrameStats& stats) const {
+    struct Unshaded {
+        LightDisc disc;
+        Color radiance;
+        double brightest;
+        std::size_t number;
+    };
+    thread_local std::vector<Unshaded> lamps;  // keeps its memory: this is asked at every sample
+    lamps.clear();
+    Color left = Color::Zero();
+    const auto gather = [&](const auto& lights) {
+        for (const auto& light : lights) {
+            const LightAt at = LightSet::at(light, s.point, s.normal);
+            if (!(at.irradiance > 0).any()) continue;
+            const Color radiance = bsdf.value(at.disc.toward) * at.irradiance;
+            const double most = radiance.maxCoeff();  // no number where infinity meets black
+            lamps.push_back({at.disc, radiance, most >= 0 ? most : kMiss, lamps.size()});
+            left += radiance;
+        }
+    };
+    gather(lights_.points);
+    gather(lights_.spheres);
+    std::sort(lamps.begin(), lamps.end(), [](const Unshaded& a, const Unshaded& b) {
+        return a.brightest != b.brightest ? a.brightest > b.brightest : a.number < b.number;
+    });
+    for (const Unshaded& lamp : lamps) {
+        if ((left <= kLeftOut * sum).all()) return;
+        sum += shadows_->visibility(lamp.disc, s.point, s.body, stats, s.time) * lamp.radiance;
+        left -= lamp.radiance;
+    }
 }
 
 Color Shading::reflected(const Surface& s, const Bsdf& bsdf, const LightDisc& light,

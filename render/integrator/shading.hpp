@@ -39,11 +39,13 @@ class Shading {
     /// lights of BRDF * irradiance * visibility, plus albedo times the sky's radiance. The BRDF of
     /// a 4D Lambert surface is 3 albedo/(4 pi), as the integral of cos over the hemisphere of S^3
     /// is 4 pi/3; a rough surface's is taken toward the light's middle, and its share of the sky as
-    /// Lambert's.
+    /// Lambert's. Point and sphere lights may be left out as long as that changes no channel by
+    /// more than 1e-4 of it.
     /// @param out   toward the viewer, unit, world axes
     Color radiance(const Surface& surface, const Vec4& out, FrameStats& stats) const;
 
   private:
+    void add_lamps(const Surface& surface, const Bsdf& bsdf, Color& sum, FrameStats& stats) const;
     /// One light's share of the radiance.
     Color reflected(const Surface& surface, const Bsdf& bsdf, const LightDisc& light,
                     const Color& irradiance, FrameStats& stats) const;

@@ -122,6 +122,48 @@ TEST(Shading, SphereLightIsTheSineCubed) {
     EXPECT_NEAR(shade(scene, -Vec4::UnitY()).radiance[0], 5, 1e-14);
 }
 
+TEST(Shading, LeavesOutLightsThatAddLessThanATenThousandth) {
+    // Many lights of very different flux, some of them shaded: held against one at a time, of which
+    // none is left out.
+    Random random(43);
+    std::uint64_t asked = 0, all = 0;
+    for (int i = 0; i < 300; ++i) {
+        TestScene scene;
+        scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero());
+        for (int k = 0; k < 6; ++k) scene.add(Hypersphere{0.7}, random_vector(random, 3));
+        scene.materials[0].albedo = {0.2, 0.5, 0.9};
+        if (i % 2) scene.lights.sky = {0.01, 0.02, 0};
+        const auto strength = [&] { return std::pow(10, uniform(random, -9, 2)); };
+        const auto place = [&] { return Vec4(random_vector(random, 6) + 2 * Vec4::UnitY()); };
+        const auto color = [&] { return Color(strength(), strength(), strength()); };
+        for (int k = 0; k < 20; ++k) {
+            if (i % 3 != 0) scene.lights.points.push_back({place(), color()});
+            if (i % 3 != 1) scene.lights.spheres.push_back({place(), 0.3, color()});
+        }
+        const Vec4 down = Vec4(0.3, -1, 0.2, 0.1).normalized();
+        const Shaded together = shade(scene, down);
+        TestScene one = scene;
+        one.lights.points.clear(), one.lights.spheres.clear();
+        const Color unlit = shade(one, down).radiance;
+        Color expected = unlit;
+        const auto add = [&](auto& lights, const auto& light) {
+            lights = {light};
+            const Shaded alone = shade(one, down);
+            expected += alone.radiance - unlit;
+            all += alone.stats.shadow_rays;
+            lights.clear();
+        };
+        for (const PointLight& light : scene.lights.points) add(one.lights.points, light);
+        for (const SphereLight& light : scene.lights.spheres) add(one.lights.spheres, light);
+        asked += together.stats.shadow_rays;
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_LE(together.radiance[c], expected[c] * (1 + 1e-12)) << i;
+            EXPECT_GE(together.radiance[c], expected[c] * (1 - 1.0001e-4)) << i;
+        }
+    }
+    EXPECT_LT(asked, all * 3 / 4);
+}
+
 TEST(Shading, BodiesShadeALightOnlyFromBetween) {
     // A ball on the way to the light, beside it, and behind it.
     for (int kind = 0; kind < 2; ++kind)
