@@ -106,10 +106,14 @@ struct Channels {
     bool color = true, depth = true, normal = true, albedo = true, id = true, position = false;
     bool variance = false, samples = false;
     bool motion = false, zplanar = false, normal3 = false, light = false;
+    bool cryptomatte = false;
 
     /// Any that LayerPixel holds.
     bool any_layer() const { return motion || zplanar || normal3 || light; }
 };
+
+/// Whether view rays that meet nothing bring the sky's light.
+enum class Sky { kOpaque, kTransparent };
 
 struct Settings {
     int width = 1280, height = 720;
@@ -132,6 +136,7 @@ struct Settings {
     Channels channels;
     Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]
+    Sky sky = Sky::kOpaque;
     std::optional<Crop> crop;
 
     double ray_limit() const {

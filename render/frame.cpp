@@ -41,7 +41,7 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const Channels& channels = settings.channels;
     const FrameScene scene(picture, channels.color || channels.light || !preview.empty());
     TileSource source(scene.slice(), window, settings.tile);
-    ExrWriter image(exr, settings, window, info, picture.camera, scene.camera());
+    ExrWriter image(exr, settings, window, info, picture.camera, scene.camera(), picture.mattes);
     std::optional<Preview> small;
     if (!preview.empty()) small.emplace(window, settings.exposure);
     FrameStats stats;

@@ -8,6 +8,7 @@
 #include "core/dynamics/motion_version.hpp"
 #include "core/dynamics/state/bodies.hpp"
 #include "render/description.hpp"
+#include "render/mattes.hpp"
 #include "render/picture_version.hpp"
 
 // What a frame is asked to show, and what was counted while it was rendered.
@@ -40,6 +41,7 @@ struct Picture {
     int frame = 0;  ///< its number: frames have random numbers of their own
     /// Of the same bodies: for Channels::motion only. Without one its vectors are 0.
     const Neighbour *next = nullptr, *last = nullptr;
+    const Mattes* mattes = nullptr;  ///< where Channels::cryptomatte is asked for
 };
 
 /// What goes into the header beside the pixels.

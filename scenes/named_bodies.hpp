@@ -12,6 +12,7 @@ struct NamedBodies {
     std::string name;
     BodyId first = 0;
     std::uint32_t count = 1;
+    bool is_lattice = false;
 };
 
 }  // namespace tesserae::scenes

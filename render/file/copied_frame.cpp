@@ -26,7 +26,7 @@ void copy_frame(const FrameFiles& from, const Picture& picture, const FrameInfo&
     const Settings& settings = picture.settings;
     const Crop window = settings.window();
     const Camera camera(picture.camera, settings.width, settings.height);
-    ExrWriter image(to.exr, settings, window, info, picture.camera, camera);
+    ExrWriter image(to.exr, settings, window, info, picture.camera, camera, picture.mattes);
     image.copy_tiles(from.exr);
     // The preview first: where the image exists, its preview does.
     copy_bytes(from.preview, to.preview);

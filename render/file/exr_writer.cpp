@@ -59,13 +59,36 @@ class MemoryStream : public Imf::OStream {
     std::uint64_t position_ = 0;
 };
 
-/// A channel of the file and where it lies in a Pixel.
+/// What a tile holds of a pixel.
+enum class Record { kPixel, kLayers, kMattes };
+
+/// A channel of the file and where it lies in a pixel's record.
 struct ChannelPlace {
-    const char* name;
+    std::string name;
     Imf::PixelType type;
     std::size_t offset;
-    bool in_layers = false;  ///< of LayerPixel, not of Pixel
+    Record record = Record::kPixel;
 };
+
+/// The first pixel's record of a tile, and how far it is to the next one's.
+std::pair<const char*, std::size_t> records_of(const TileImage& tile, Record record) {
+    const auto bytes = [](const auto& records) {
+        return std::pair(reinterpret_cast<const char*>(records.data()), sizeof records[0]);
+    };
+    if (record == Record::kLayers) return bytes(tile.layers);
+    if (record == Record::kMattes) return bytes(tile.mattes);
+    return bytes(tile.pixels);
+}
+
+constexpr const char* kObjectMattes = "CryptoObject";
+constexpr const char* kMaterialMattes = "CryptoMaterial";
+
+/// Two ranks to a layer: CryptoObject00.R to .A, CryptoObject01.R...
+void add_mattes(const char* layer, std::size_t offset, std::vector<ChannelPlace>& places) {
+    for (std::size_t i = 0; i < 2 * MattePixel::kRanks; ++i)
+        places.push_back({fmt::format("{}{:02}.{}", layer, i / 4, "RGBA"[i % 4]), Imf::FLOAT,
+                          offset + i * sizeof(float), Record::kMattes});
+}
 
 void add_layers(const Channels& wanted, std::vector<ChannelPlace>& places) {
     const auto add = [&](bool want, Imf::PixelType type, std::size_t first,
@@ -73,7 +96,7 @@ void add_layers(const Channels& wanted, std::vector<ChannelPlace>& places) {
         if (!want) return;
         const std::size_t size = type == Imf::HALF ? sizeof(Imath::half) : sizeof(float);
         for (const char* name : names) {
-            places.push_back({name, type, first, true});
+            places.push_back({name, type, first, Record::kLayers});
             first += size;
         }
     };
@@ -118,6 +141,10 @@ std::vector<ChannelPlace> places_of(const Channels& wanted) {
     add(wanted.samples, {{"samples", Imf::UINT, offsetof(Pixel, samples)}});
     add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
     add_layers(wanted, places);
+    if (wanted.cryptomatte) {
+        add_mattes(kObjectMattes, offsetof(MattePixel, objects), places);
+        add_mattes(kMaterialMattes, offsetof(MattePixel, materials), places);
+    }
     return places;
 }
 
@@ -142,8 +169,22 @@ std::string exact(const Vec4& v) {
     return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", v[0], v[1], v[2], v[3]);
 }
 
+/// Says of a Cryptomatte layer how to read it (its specification 1.2.0, "Metadata").
+void describe_mattes(const char* layer, const MatteNames& names, Imf::Header& header) {
+    const std::string key =
+        fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", murmur3(layer)));
+    const auto text = [&](const char* name, const std::string& value) {
+        header.insert(key + name, Imf::StringAttribute(value));
+    };
+    text("name", layer);
+    text("hash", "MurmurHash3_32");
+    text("conversion", "uint32_to_float32");
+    text(names.is_file ? "manif_file" : "manifest", names.manifest);
+}
+
 Imf::Header header_of(const Settings& settings, const Crop& window, const FrameInfo& info,
-                      const CameraDescription& description, const Camera& camera) {
+                      const CameraDescription& description, const Camera& camera,
+                      const Mattes* mattes) {
     const Imath::Box2i display({0, 0}, {settings.width - 1, settings.height - 1});
     const Imath::Box2i data({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1});
     Imf::Header header(display, data);
@@ -174,6 +215,11 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     header.insert(kPictureVersionAttribute, Imf::IntAttribute(info.picture_version));
     header.insert("tesserae/frame", Imf::IntAttribute(info.frame));
     header.insert("tesserae/samples", Imf::IntAttribute(settings.samples));
+    if (settings.channels.cryptomatte) {
+        TSR_ASSERT(mattes != nullptr);
+        describe_mattes(kObjectMattes, mattes->object_names, header);
+        describe_mattes(kMaterialMattes, mattes->material_names, header);
+    }
     return header;
 }
 
@@ -216,27 +262,27 @@ struct ExrWriter::File {
 
 ExrWriter::ExrWriter(const std::filesystem::path& path, const Settings& settings,
                      const Crop& window, const FrameInfo& info,
-                     const CameraDescription& description, const Camera& camera)
+                     const CameraDescription& description, const Camera& camera,
+                     const Mattes* mattes)
     : channels_(settings.channels) {
     if (places_of(channels_).empty())
         throw InputError("render.channels = []: an image needs at least one channel");
-    file_ = std::make_unique<File>(path, header_of(settings, window, info, description, camera));
+    file_ = std::make_unique<File>(path,
+                                   header_of(settings, window, info, description, camera, mattes));
 }
 
 ExrWriter::~ExrWriter() = default;
 
 PackedTile ExrWriter::pack(const TileImage& tile) {
-    // Channels lie interleaved in the tile's pixels and layers.
+    // Channels lie interleaved in the tile's records.
     const Imath::V2i corner(tile.x0, tile.y0);
     Imf::FrameBuffer buffer;
     for (const ChannelPlace& place : places_of(channels_)) {
-        const std::size_t stride = place.in_layers ? sizeof(LayerPixel) : sizeof(Pixel);
-        const char* first = (place.in_layers ? reinterpret_cast<const char*>(tile.layers.data())
-                                             : reinterpret_cast<const char*>(tile.pixels.data())) +
-                            place.offset;
+        const auto [records, stride] = records_of(tile, place.record);
         buffer.insert(place.name,
-                      Imf::Slice::Make(place.type, first, corner, tile.width(), tile.y1 - tile.y0,
-                                       stride, stride * static_cast<std::size_t>(tile.width())));
+                      Imf::Slice::Make(place.type, records + place.offset, corner, tile.width(),
+                                       tile.y1 - tile.y0, stride,
+                                       stride * static_cast<std::size_t>(tile.width())));
     }
     Packer& packer = file_->packers.local();
     packer.stream.bytes.clear();

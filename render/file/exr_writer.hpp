@@ -25,12 +25,15 @@ struct PackedTile {
 ///   tesserae/cameraOrigin, cameraRight, cameraUp, cameraForward, cameraFourth
 ///                                                   string: four numbers that read back exactly
 ///   framesPerSecond (rational), chromaticities (Rec. 709)
+///   cryptomatte/KEY/name, hash, conversion, manifest or manif_file   string, see Mattes
 class ExrWriter {
   public:
     /// @param window   data window, half open; the display window is the full frame
+    /// @param mattes   where Channels::cryptomatte is asked for
     /// @throws InputError   no channel is asked for; RunError as FileWriter
     ExrWriter(const std::filesystem::path& path, const Settings& settings, const Crop& window,
-              const FrameInfo& info, const CameraDescription& description, const Camera& camera);
+              const FrameInfo& info, const CameraDescription& description, const Camera& camera,
+              const Mattes* mattes = nullptr);
     ~ExrWriter();
 
     /// Compresses a tile, on any thread, while others do the same.

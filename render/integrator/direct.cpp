@@ -13,7 +13,7 @@ void DirectIntegrator::radiance(std::span<const ViewSample> samples, std::span<C
             begin(wave, samples[i], i);
         else
             colors[i] =
-                first ? shading_.radiance(*first, -samples[i].ray.direction, stats) : lights_.sky;
+                first ? shading_.radiance(*first, -samples[i].ray.direction, stats) : sky_seen();
     }
     for (int scattered = 0; !wave.live.empty(); ++scattered) {
         std::erase_if(wave.live,

@@ -71,8 +71,8 @@ void LightIntegrator::trace(PathWave& wave, FrameStats& stats) const {
 Color LightIntegrator::light_seen(const LightPath& path, double chosen) const {
     if (path.light != LightSet::kNone)
         return power_weight(path.density, chosen) * lights_.spheres[path.light].radiance;
+    if (path.is_view) return sky_seen();
     Color light = lights_.sky;
-    if (path.is_view) return light;
     for (const SunDisc& sun : lights_.suns)
         if (sun.angle > 0 && (path.ray.direction - sun.toward).squaredNorm() <= sun.squared_chord)
             light += power_weight(path.density, 1 / sun.cap.solid_angle()) * sun.radiance;

@@ -121,6 +121,10 @@ class LightIntegrator {
     /// lights.
     /// @param chosen   density with which that gives the ray's direction, toward a sphere light
     Color light_seen(const LightPath& path, double chosen) const;
+    /// What view rays bring that meet nothing.
+    Color sky_seen() const {
+        return settings_.sky == Sky::kOpaque ? lights_.sky : Color(Color::Zero());
+    }
     /// The group of numbers for the scattering after so many. Those up to the next scattering's are
     /// for the choice of lights, one for each sun and for each lamp that is asked.
     std::uint32_t first_group(int scattered, std::size_t lamps) const;

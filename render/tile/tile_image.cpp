@@ -12,7 +12,7 @@
 #include "render/sampling/sampler.hpp"
 #include "render/scene/film_list.hpp"
 #include "render/tile/adaptive.hpp"
-#include "render/tile/pixel_estimate.hpp"
+#include "render/tile/sample_sums.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -50,21 +50,10 @@ struct Draw {
     std::array<double, 4> u;
 };
 
-/// Sums over a pixel's samples, or over one of their halves.
-struct Filtered {
-    PixelEstimate color;
-    Color albedo = Color::Zero();
-    double alpha = 0;
-    int count = 0;
-    Color direct = Color::Zero(), indirect = Color::Zero();  ///< where they are asked for
-};
-
-/// What is averaged over a pixel's samples.
-struct Averages {
-    Color color, variance, albedo;
-    double alpha;
-    int count;
-    Color direct, indirect;
+/// Where a pixel's values go that are kept only where a channel asks for them; else null.
+struct Extras {
+    LayerPixel* layers = nullptr;
+    MattePixel* mattes = nullptr;
 };
 
 /// Samples of a pixel with random numbers of one pattern. In reports of samples, those of a pixel
@@ -83,14 +72,14 @@ class TileRays {
 
     /// Makes ready for the pixels of a window.
     void enter(const Crop& window) { list_.fill(scene_.slice(), tile_.candidates, window); }
-    /// @param layers   the pixel's; null where no channel is of them
-    Pixel pixel(int x, int y, LayerPixel* layers);
+    Pixel pixel(int x, int y, const Extras& extras);
     FrameStats stats;
 
   private:
     using Cell = SliceSheet::Cell;
 
-    Averages adapted(const Cell& cell, int x, int y);
+    Averages adapted(const Cell& cell, int x, int y, const Extras& extras);
+    Filtered empty_sum(std::size_t half);
     void add_samples(Filtered& sum, const Half& half, int count, const Cell& cell, int x, int y);
     // To views_:
     void add_centre(const Cell& cell, int x, int y);
@@ -109,6 +98,7 @@ class TileRays {
     void for_each_interval(Use&& use) const;
     void add_radiance(Filtered& sum, const Half& half, int x, int y);
     void find_radiance(const Sampler& sampler);
+    void add_matte(const View& view, MatteSums& sums) const;
     void store_layers(const View& view, LayerPixel& layers) const;
     void store(const Averages& averages, int x, int y, Pixel& pixel, LayerPixel* layers);
 
@@ -129,6 +119,7 @@ class TileRays {
     std::vector<GlassStart> starts_;  ///< empty where nothing is of glass
     std::vector<ViewSample> samples_;
     std::vector<Color> colors_, direct_;
+    std::array<MatteSums, 3> mattes_;  ///< of the halves and, if they are mixed, of both
     PathWave wave_;
     CentreLayers layers_;
 };
@@ -142,23 +133,6 @@ void store_view(const View& view, const Camera& camera, Pixel& pixel) {
     }
     pixel.depth = static_cast<float>(view.met.distance);
     pixel.id = view.interval->placed.bodies[view.met.body].id + 1;
-}
-
-Averages averages_of(const Filtered& sum) {
-    return {
-        sum.color.mean(), sum.color.variance(),   sum.albedo / sum.count,  sum.alpha / sum.count,
-        sum.count,        sum.direct / sum.count, sum.indirect / sum.count};
-}
-
-/// Of two independent sets of samples, each with the same weight whatever its number.
-Averages middle_of(const Averages& a, const Averages& b) {
-    return {0.5 * (a.color + b.color),
-            0.25 * (a.variance + b.variance),
-            0.5 * (a.albedo + b.albedo),
-            0.5 * (a.alpha + b.alpha),
-            a.count + b.count,
-            0.5 * (a.direct + b.direct),
-            0.5 * (a.indirect + b.indirect)};
 }
 
 bool is_beyond_half(const Color& color) { return (color.abs() > kHalfMax).any(); }
@@ -176,11 +150,12 @@ void store_averages(const Averages& averages, Pixel& pixel) {
 }  // namespace
 
 TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atomic<bool>& stop) {
-    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}, {}};
+    TileImage image = {tile.column, tile.row, tile.x0, tile.y0, tile.x1, tile.y1, {}, {}, {}, {}};
     image.pixels.resize(static_cast<std::size_t>(image.width()) *
                         static_cast<std::size_t>(tile.y1 - tile.y0));
-    const bool has_layers = scene.picture().settings.channels.any_layer();
-    if (has_layers) image.layers.resize(image.pixels.size(), CentreLayers::empty());
+    const Channels& channels = scene.picture().settings.channels;
+    if (channels.any_layer()) image.layers.resize(image.pixels.size(), CentreLayers::empty());
+    if (channels.cryptomatte) image.mattes.resize(image.pixels.size());
     TileRays rays(scene, tile);
     constexpr int kSide = FilmList::kSide;
     for (int y0 = tile.y0; y0 < tile.y1; y0 += kSide)
@@ -192,8 +167,10 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
                 for (int x = window.x0; x < window.x1; ++x) {
                     if (stop.load(std::memory_order_relaxed)) throw Stopped();
                     const std::size_t index = image.index(x, y);
-                    image.pixels[index] =
-                        rays.pixel(x, y, has_layers ? &image.layers[index] : nullptr);
+                    Extras extras;
+                    if (!image.layers.empty()) extras.layers = &image.layers[index];
+                    if (!image.mattes.empty()) extras.mattes = &image.mattes[index];
+                    image.pixels[index] = rays.pixel(x, y, extras);
                 }
         }
     image.stats = rays.stats;
@@ -202,34 +179,50 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
 
 namespace {
 
-Pixel TileRays::pixel(int x, int y, LayerPixel* layers) {
+Pixel TileRays::pixel(int x, int y, const Extras& extras) {
     Pixel pixel = {};
     pixel.depth = std::numeric_limits<float>::infinity();
     const auto cell = scene_.sheet().cell_of(x, y);
     if (!cell) return pixel;
 
-    Filtered sum;
+    Filtered sum = empty_sum(0);
     if (wants_centre_) {
         views_.clear();
         add_centre(*cell, x, y);
         trace(true);
         store_view(views_.front(), scene_.camera(), pixel);
-        if (layers) store_layers(views_.front(), *layers);
+        if (extras.layers) store_layers(views_.front(), *extras.layers);
         if (most_ == 1) add_radiance(sum, whole_, x, y);
     }
     if (wants_samples_ && most_ > least_) {
-        store(adapted(*cell, x, y), x, y, pixel, layers);
+        store(adapted(*cell, x, y, extras), x, y, pixel, extras.layers);
         return pixel;
     }
     if (wants_samples_) add_samples(sum, whole_, most_, *cell, x, y);
-    if (sum.count > 0) store(averages_of(sum), x, y, pixel, layers);
+    if (sum.count > 0) store(averages_of(sum), x, y, pixel, extras.layers);
+    if (sum.count > 0 && extras.mattes) *extras.mattes = sum.mattes->ranked(1.0 / sum.count);
     return pixel;
+}
+
+Filtered TileRays::empty_sum(std::size_t half) {
+    Filtered sum;
+    if (!settings_.channels.cryptomatte) return sum;
+    sum.mattes = &mattes_[half];
+    sum.mattes->clear();
+    return sum;
 }
 
 void TileRays::store_layers(const View& view, LayerPixel& layers) const {
     const Surface* surface = view.surface();
     const BodyId body = surface ? view.interval->placed.bodies[surface->body].id : 0;
     layers_.store(view.ray, surface, body, layers);
+}
+
+void TileRays::add_matte(const View& view, MatteSums& sums) const {
+    const Picture& picture = scene_.picture();
+    const BodyId body = view.interval->placed.bodies[view.met.body].id;
+    const std::uint32_t material = picture.appearance[picture.bodies.type[body]].material;
+    sums.add(picture.mattes->objects[body], picture.mattes->materials[material]);
 }
 
 void TileRays::store(const Averages& averages, int x, int y, Pixel& pixel, LayerPixel* layers) {
@@ -258,16 +251,22 @@ TileRays::TileRays(const FrameScene& scene, const Tile& tile)
     most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples()
                                                               : settings_.samples;
     wants_centre_ = most_ == 1 || scene.needs().centre_rays;
-    wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance);
+    wants_samples_ =
+        most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance || c.cryptomatte);
 }
 
-Averages TileRays::adapted(const Cell& cell, int x, int y) {
-    std::array<Filtered, 2> sums;
+Averages TileRays::adapted(const Cell& cell, int x, int y, const Extras& extras) {
+    std::array<Filtered, 2> sums = {empty_sum(0), empty_sum(1)};
     sample_adaptively(least_, most_, settings_.noise_target,
                       [&](std::size_t half, int count) -> const PixelEstimate& {
                           add_samples(sums[half], halves_[half], count, cell, x, y);
                           return sums[half].color;
                       });
+    if (extras.mattes) {
+        mattes_[2].clear();
+        for (const Filtered& sum : sums) sum.mattes->add_to(mattes_[2], 0.5 / sum.count);
+        *extras.mattes = mattes_[2].ranked(1);
+    }
     return middle_of(averages_of(sums[0]), averages_of(sums[1]));
 }
 
@@ -387,6 +386,7 @@ void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
         if (!view.is_met) continue;
         sum.alpha += 1;
         sum.albedo += view.met.albedo;
+        if (sum.mattes) add_matte(view, *sum.mattes);
     }
     if (!scene_.wants_color()) return;
     find_radiance(Sampler(x, y, 0, half.pattern));

@@ -31,6 +31,7 @@ struct TileImage {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     std::vector<Pixel> pixels;
     std::vector<LayerPixel> layers;  ///< in the same order; empty where no channel is of them
+    std::vector<MattePixel> mattes;  ///< the same
     FrameStats stats;
 
     int width() const { return x1 - x0; }

@@ -13,6 +13,7 @@
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
 #include "render/picture_needs.hpp"
+#include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
@@ -249,6 +250,8 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     info.scene_hash = frame_hash(scene.effective, info.picture_version, info.motion_version);
     info.program_version = TESSERAE_VERSION;
     info.id_names = id_names(scene);
+    std::optional<render::Mattes> mattes;
+    if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);
 
     std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
@@ -264,7 +267,8 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             continue;
         }
         Exposure exposure(scene, poses, info.frame);
-        const render::Picture picture = exposure.picture(scene, info.frame);
+        render::Picture picture = exposure.picture(scene, info.frame);
+        if (mattes) picture.mattes = &*mattes;
         if (shown && !render::needs_of(picture).moving_noise &&
             exposure.looks_like(shown->exposure, scene)) {
             render::copy_frame(shown->files, picture, info, files);

@@ -162,7 +162,7 @@ class BodyLoader {
 
         Bodies& bodies = scene_.bodies;
         scene_.names.push_back({body.name, static_cast<BodyId>(bodies.size()),
-                                static_cast<std::uint32_t>(body.count)});
+                                static_cast<std::uint32_t>(body.count), body.lattice.has_value()});
         const Rotor rotor = exp(-0.5 * std::numbers::pi / 180 * body.rotation);
         for (std::uint64_t i = 0; i < body.count; ++i) {
             bodies.type.push_back(type);

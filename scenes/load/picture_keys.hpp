@@ -26,6 +26,7 @@ constexpr std::string_view kPictureIntegrators[] = {"direct", "path"};
 constexpr std::string_view kIntersectors[] = {"trace", "analytic"};
 constexpr std::string_view kFilters[] = {"box", "triangle", "gaussian", "blackman-harris"};
 constexpr std::string_view kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
+constexpr std::string_view kSkies[] = {"opaque", "transparent"};
 constexpr Flag<render::Channels> kChannels[] = {{"color", &render::Channels::color},
                                                 {"depth", &render::Channels::depth},
                                                 {"normal", &render::Channels::normal},
@@ -37,7 +38,8 @@ constexpr Flag<render::Channels> kChannels[] = {{"color", &render::Channels::col
                                                 {"motion", &render::Channels::motion},
                                                 {"zplanar", &render::Channels::zplanar},
                                                 {"normal3", &render::Channels::normal3},
-                                                {"light", &render::Channels::light}};
+                                                {"light", &render::Channels::light},
+                                                {"cryptomatte", &render::Channels::cryptomatte}};
 
 struct NotEmpty {
     void read(TableReader& reader, const char* key, std::string& value) const {
@@ -211,6 +213,7 @@ void ray_keys(auto& self, const auto& visit) {
     visit("intersector", self.intersector, Names{kIntersectors});
     visit("max_steps", self.max_steps, IntegerRange{1, kMaxSteps});
     visit("max_distance", self.max_distance, Rule::kNonNegative);
+    visit("sky", self.sky, NamesOrUnwritten{{kSkies}});
     visit("tile", self.tile, IntegerRange{8, 512});
 }
 /// [render]: the files

@@ -99,6 +99,13 @@ struct Names {
     }
 };
 
+/// The first is not written: see NonNegativeOrUnwritten.
+struct NamesOrUnwritten : Names {
+    void write(EffectiveWriter& out, const char* key, auto value) const {
+        if (static_cast<std::size_t>(value) != 0) Names::write(out, key, value);
+    }
+};
+
 template <class T>
 struct Flag {
     std::string_view name;

@@ -31,8 +31,10 @@ constexpr std::uint64_t kMotionBytes = 256;
 constexpr std::uint64_t kProgramBytes = 100'000'000;
 /// A pixel of a tile in flight, all channels, before and after compression.
 constexpr std::uint64_t kPixelBytes = 200;
-/// The same of its further layers.
-constexpr std::uint64_t kLayerBytes = 100;
+/// The same of its further layers, and of its Cryptomattes.
+constexpr std::uint64_t kLayerBytes = 100, kMatteBytes = 200;
+/// Of a body, with its name and what says so in a header.
+constexpr std::uint64_t kMatteNameBytes = 200;
 /// More states for vectors of motion: the neighbours of a frame and of the one before it.
 constexpr std::uint64_t kNeighbourStates = 4;
 /// Tiles of a thread in memory: of large ones two are under way (tiles_in_flight,
@@ -119,8 +121,11 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           spheres * kSphereStepBytes +
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
-    if (scene.render.channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
-    if (scene.render.channels.motion) bytes += plan.bodies * kNeighbourStates * kStateBytes;
+    const render::Channels& channels = scene.render.channels;
+    if (channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
+    if (channels.cryptomatte)
+        bytes += kTilesOfThread * threads * tile * kMatteBytes + plan.bodies * kMatteNameBytes;
+    if (channels.motion) bytes += plan.bodies * kNeighbourStates * kStateBytes;
     if (scene.camera.shutter > 0)
         bytes +=
             plan.bodies * (kPictureBytes * render::most_intervals(plan.bodies) +

@@ -112,6 +112,8 @@ void decide_picture(const Scene& scene, Plan& plan) {
     const render::PictureNeeds needs = render::needs_of(picture_of(scene, scene.camera));
     decide_camera(scene, needs, plan);
     decide_light(scene, needs, plan);
+    plan.decide("transparent sky", scene.render.sky == render::Sky::kTransparent,
+                "view rays that meet nothing bring no light", "sky = \"opaque\"");
     for (const auto& [name, member] : kChannels)
         if (!(scene.render.channels.*member))
             plan.decide(fmt::format("channel {}", name), false, "", "not in channels");

@@ -224,6 +224,7 @@ TestScene everything() {
     channels.motion = channels.zplanar = channels.normal3 = channels.light = true;
     scene.next = {*scene.closing, random_camera(random, 6)};
     scene.last = {scene.bodies, random_camera(random, 6)};
+    scene.add_mattes();
     return scene;
 }
 

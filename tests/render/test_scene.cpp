@@ -125,6 +125,15 @@ Image read_exr(const std::filesystem::path& path) {
     return image;
 }
 
+void TestScene::add_mattes() {
+    settings.channels.cryptomatte = true;
+    mattes.emplace();
+    for (BodyId id = 0; id < bodies.size(); ++id)
+        mattes->objects.push_back(matte_id("body " + std::to_string(id)));
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        mattes->materials.push_back(matte_id("material " + std::to_string(i)));
+}
+
 FrameStats render(const TestScene& scene, const std::filesystem::path& exr,
                   const std::filesystem::path& preview, int threads) {
     const tbb::global_control more_than_cores(tbb::global_control::max_allowed_parallelism,

@@ -28,7 +28,10 @@ struct TestScene {
     mutable std::vector<ShutterMoment> path = {};  ///< or what the shutter sees
     int frame = 0;
     std::optional<Neighbour> next = {}, last = {};
+    std::optional<Mattes> mattes = {};
 
+    /// Asks for Cryptomattes: bodies are "body 0", "body 1", ... and materials "material 0", ...
+    void add_mattes();
     BodyId add(const Shape& shape, const Vec4& position, const Rotor& rotor = {},
                std::uint32_t material = 0);
     Picture picture() const {
@@ -38,6 +41,7 @@ struct TestScene {
         picture.path = path;
         picture.next = next ? &*next : nullptr;
         picture.last = last ? &*last : nullptr;
+        picture.mattes = mattes ? &*mattes : nullptr;
         return picture;
     }
 };

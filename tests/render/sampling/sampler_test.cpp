@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/render/test_scene.hpp"
+
 namespace tesserae::render {
 namespace {
 

@@ -207,6 +207,7 @@ const std::vector<Broken>& broken_scenes() {
         {"[render]\ntile = 7\n", "2:8", {"8 to 512"}},
         {"[render]\nchannels = [\"colour\"]\n", "2:13", {"did you mean \"color\"?"}},
         {"[render]\nchannels = [\"id\", \"id\"]\n", "2:19", {"channels[1] = \"id\"", "twice"}},
+        {"[render]\nsky = \"clear\"\n", "2:7", {"\"opaque\"", "\"transparent\""}},
         {"[render]\nchannels = []\n", "2:12", {"at least one"}},
         {"[render]\ncrop = [0, 0, 8, 8]\n", "2:8", {"use --crop"}},
         {"[render]\nintegrator = \"euler\"\n", "2:14", {"\"direct\"", "\"path\""}},

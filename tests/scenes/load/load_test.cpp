@@ -103,10 +103,12 @@ TEST(LoadScene, EmptyTableHasAllDefaults) {
 }
 
 TEST(LoadScene, ReadsChannelsForCompositing) {
-    const Scene scene =
-        load_text("[render]\nchannels = [\"motion\", \"zplanar\", \"normal3\", \"light\"]");
+    const Scene scene = load_text(
+        "[render]\nsky = \"transparent\"\n"
+        "channels = [\"motion\", \"zplanar\", \"normal3\", \"light\", \"cryptomatte\"]");
     const render::Channels& c = scene.render.channels;
-    EXPECT_TRUE(c.motion && c.zplanar && c.normal3 && c.light);
+    EXPECT_TRUE(c.motion && c.zplanar && c.normal3 && c.light && c.cryptomatte);
+    EXPECT_EQ(scene.render.sky, render::Sky::kTransparent);
     EXPECT_FALSE(c.color || c.depth || c.normal || c.albedo || c.id);
     EXPECT_FALSE(load_text("[scene]").render.channels.any_layer());
 }
