@@ -11,6 +11,7 @@ packages=(
     ccache                # what was compiled before is not compiled again; may be missing
     libtbb-dev            # threads: oneTBB 2021.8, 2022.1
     libeigen3-dev         # linear algebra: Eigen 3.4
+    libqhull-dev          # hulls of polychora: Qhull 2020.2
     libembree-dev         # rays through a lens or a shutter: Embree 3.13, 4.3
     libopenexr-dev        # frames: OpenEXR 3.1
     libpng-dev zlib1g-dev # previews

@@ -9,6 +9,7 @@
 #include "core/contact/hypersphere_hypercapsule.hpp"
 #include "core/contact/hypersphere_hyperplane.hpp"
 #include "core/contact/hypersphere_hypersphere.hpp"
+#include "core/contact/polychoron_pairs.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {

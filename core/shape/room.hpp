@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/algebra/rotor.hpp"
 #include "core/algebra/vector.hpp"
 
 namespace tesserae {
@@ -81,7 +82,7 @@ concept ShapeRoom = requires(S& own, const S& s, double mass, const Mat4& turn, 
     { complete(own) } -> std::same_as<void>;
     /// 4D content [m^4]; infinite if not bounded.
     { volume(s) } -> std::same_as<double>;
-    /// J_i = integral of rho x_i^2 [kg m^2].
+    /// J_i = integral of rho x_i^2 [kg m^2], along the body's axes, or those of HasPrincipalAxes.
     { second_moments(s, mass) } -> std::same_as<Vec4>;
     /// Of the sphere about the centre that holds the shape [m].
     { bounding_radius(s) } -> std::same_as<double>;
@@ -103,6 +104,32 @@ concept ShapeRoom = requires(S& own, const S& s, double mass, const Mat4& turn, 
     { ray_exit(s, point, direction) } -> std::same_as<double>;
     /// By what angle the ray misses the shape; direction unit.
     { rim(s, point, direction, range) } -> std::same_as<Rim>;
+};
+
+/// What a function is at a point, and its gradient.
+struct Level {
+    double value;
+    Vec4 gradient;
+};
+
+/// A shape whose distance takes long outside, with a quicker function for rays to go along: convex,
+/// at most 0 in the shape and nowhere else.
+template <class S>
+concept HasQuickLevel = requires(const S& s, const Vec4& point) {
+    { quick_level(s, point) } -> std::same_as<Level>;
+};
+
+/// A shape whose surface may have several normals at a point, of which none is to be preferred.
+template <class S>
+concept HasShadingNormal = requires(const S& s, const Vec4& point) {
+    { shading_normal(s, point) } -> std::same_as<Vec4>;
+};
+
+/// A shape whose second_moments() are not along the body's axes.
+template <class S>
+concept HasPrincipalAxes = requires(const S& s) {
+    /// What takes the principal axes to the body's; null if they are those.
+    { principal_axes(s) } -> std::same_as<const Rotor*>;
 };
 
 /// A shape with flat parts: bodies slide over several of them that lie in one plane as over one.

@@ -6,6 +6,7 @@
 #include "core/shape/hypercapsule.hpp"
 #include "core/shape/hyperplane.hpp"
 #include "core/shape/hypersphere.hpp"
+#include "core/shape/polychoron.hpp"
 
 namespace tesserae {
 
@@ -16,7 +17,7 @@ using Complete = S;
 /// The shape list: a new shape is its room, its pair files and one entry here. Code that works on
 /// any shape visits it.
 using Shape = std::variant<Complete<Hypersphere>, Complete<Hypercapsule>, Complete<Hyperbox>,
-                           Complete<Hyperplane>>;
+                           Complete<Hyperplane>, Complete<Polychoron>>;
 
 inline const char* name_of(const Shape& shape) {
     return std::visit([](const auto& s) { return s.kName; }, shape);
@@ -27,6 +28,29 @@ inline bool is_bounded(const Shape& shape) {
 /// Of the ball about the centre that holds it [m]; infinite if unbounded.
 inline double bounding_radius(const Shape& shape) {
     return std::visit([](const auto& s) { return bounding_radius(s); }, shape);
+}
+
+/// Outward at a point of its surface, unit, in its own frame: what a picture is shaded with.
+inline Vec4 surface_normal(const Shape& shape, const Vec4& point) {
+    return std::visit(
+        [&]<class S>(const S& s) -> Vec4 {
+            if constexpr (HasShadingNormal<S>)
+                return shading_normal(s, point);
+            else
+                return normal(s, point);
+        },
+        shape);
+}
+/// What takes its principal axes to the body's; null if they are those.
+inline const Rotor* principal_axes_of(const Shape& shape) {
+    return std::visit(
+        []<class S>(const S& s) -> const Rotor* {
+            if constexpr (HasPrincipalAxes<S>)
+                return principal_axes(s);
+            else
+                return nullptr;
+        },
+        shape);
 }
 
 }  // namespace tesserae

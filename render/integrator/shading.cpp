@@ -46,8 +46,7 @@ void Shading::find_surface(const Hit& hit, const Ray& ray, Surface& s) const {
     s.body = hit.body;
     s.point = ray.at(hit.distance);
     const Vec4 local = placed_.point_to_body(body, s.point, ray.time);
-    const Vec4 out =
-        std::visit([&](const auto& shape) { return normal(shape, local); }, *body.shape);
+    const Vec4 out = surface_normal(*body.shape, local);
     const std::uint32_t type = picture_.bodies.type[body.id];
     const Material& material = picture_.materials[picture_.appearance[type].material];
     s.normal = placed_.direction_to_world(body, out, ray.time);

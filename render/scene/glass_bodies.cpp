@@ -26,8 +26,7 @@ double distance_of(const PlacedBodies& placed, const PlacedBody& body, const Vec
 Vec4 normal_of(const PlacedBodies& placed, const PlacedBody& body, const Vec4& point,
                double time = 0) {
     const Vec4 local = placed.point_to_body(body, point, time);
-    const Vec4 out = std::visit([&](const auto& s) { return normal(s, local); }, *body.shape);
-    return placed.direction_to_world(body, out, time);
+    return placed.direction_to_world(body, surface_normal(*body.shape, local), time);
 }
 
 /// A point of a bounded body that is farthest along a direction.

@@ -11,6 +11,22 @@ namespace {
 /// the ray grows with the square, a hit is then early by at most sqrt(2 radius 1e-13 scale).
 constexpr double kOnSurface = 1e-13;
 
+/// The signed distance, or a quicker function, and its slope along a ray.
+struct LevelAlong {
+    double value, slope;
+};
+/// @param near   the slope is not asked for at values up to this
+template <class S>
+LevelAlong level_along(const S& shape, const Vec4& point, const Vec4& direction, double near) {
+    if constexpr (HasQuickLevel<S>) {
+        const Level level = quick_level(shape, point);
+        return {level.value, level.gradient.dot(direction)};
+    } else {
+        const double distance = signed_distance(shape, point);
+        return {distance, distance <= near ? 0 : normal(shape, point).dot(direction)};
+    }
+}
+
 /// Sphere tracing with the step lengthened by the slope. The signed distance f of a convex body is
 /// a convex function along a ray, so the tangent at t crosses zero no later than f does: the step
 /// f/(-f') never passes the surface, is never shorter than the plain step f (as -f' <= 1), and
@@ -25,10 +41,10 @@ double trace(const S& shape, const Vec4& origin, const Vec4& direction, double s
     double t = start;
     for (int step = 0; step < max_steps; ++step) {
         const Vec4 point = origin + t * direction;
-        const double distance = signed_distance(shape, point);
+        const auto [distance, slope] =
+            level_along(shape, point, direction, kOnSurface * (scale + t));
         ++stats.distance_evaluations;
         if (distance <= kOnSurface * (scale + t)) return t;
-        const double slope = normal(shape, point).dot(direction);
         if (slope >= 0) return kMiss;
         t += std::max(distance, distance / -slope);
         if (t > end) return kMiss;

@@ -160,6 +160,16 @@ std::string toml_text(std::string_view value) {
 }
 
 std::string toml_text(const Vec4& value) { return list(value.data(), 4); }
+
+std::string toml_text(const std::vector<Vec4>& values) {
+    std::string text = "[";
+    for (const Vec4& value : values) text += (text.size() > 1 ? ", " : "") + toml_text(value);
+    return text + "]";
+}
+
+std::string toml_text(RegularPolychoron which) {
+    return toml_text(kRegularNames[static_cast<std::size_t>(which) - 1]);
+}
 std::string toml_text(const render::Color& value) { return list(value.data(), 3); }
 
 std::string toml_text(const Bivector& b) {

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/algebra/bivector.hpp"
+#include "core/shape/polychoron.hpp"
 #include "render/description.hpp"
 
 namespace tesserae::scenes {
@@ -21,6 +23,8 @@ std::string toml_text(bool value);
 std::string toml_text(std::string_view value);  ///< quoted, escaped
 std::string toml_text(const char* value);
 std::string toml_text(const Vec4& value);
+std::string toml_text(const std::vector<Vec4>& values);
+std::string toml_text(RegularPolychoron which);
 std::string toml_text(const render::Color& value);
 std::string toml_text(const Bivector& value);  ///< { xy = ..., ... }
 

@@ -38,6 +38,36 @@ void visit_parameters(auto& shape, const auto& visit) {
     std::visit([&](auto& s) { s.parameters(s, visit); }, shape);
 }
 
+template <class S>
+void read_parameters(TableReader& reader, S& shape) {
+    shape.parameters(shape, [&](const char* size, auto& member, Rule rule) {
+        // A plain number, such as a hyperplane's offset, is 0 where it is not given.
+        if (rule != Rule::kFinite) reader.require(size, expected_of(rule));
+        reader.read(size, member, rule);
+    });
+}
+
+/// Points, or a regular one's name and radius.
+void read_parameters(TableReader& reader, Polychoron& shape) {
+    if (reader.read("vertices", shape.vertices)) {
+        shape.regular = RegularPolychoron::kNone;
+        for (const char* key : {"regular", "radius"})
+            if (reader.has(key)) reader.fail(key, "there are vertices too; expected only them");
+        return;
+    }
+    constexpr auto kNames = [] {
+        std::array<std::string_view, std::size(kRegularNames)> names;
+        std::copy(std::begin(kRegularNames), std::end(kRegularNames), names.begin());
+        return names;
+    }();
+    reader.require("regular", "expected vertices, or a regular one's name, as \"24-cell\"");
+    auto which = static_cast<std::size_t>(shape.regular) - 1;
+    reader.read("regular", which, kNames);
+    shape.regular = static_cast<RegularPolychoron>(which + 1);
+    reader.require("radius", expected_of(Rule::kPositive));
+    reader.read("radius", shape.radius, Rule::kPositive);
+}
+
 }  // namespace
 
 void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
@@ -48,16 +78,13 @@ void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
         // Any shape's keys may be there: a misspelt "shape" is what must be found.
         for (const Shape& any : kShapes)
             visit_parameters(any, [&](const char* size, auto&, Rule) { reader.has(size); });
+        reader.has("vertices");
         return;
     }
     std::size_t kind = 0;
     reader.read(key, kind, kShapeNames);
     shape = kShapes[kind];
-    visit_parameters(shape, [&](const char* size, auto& member, Rule rule) {
-        // A plain number, such as a hyperplane's offset, is 0 where it is not given.
-        if (rule != Rule::kFinite) reader.require(size, expected_of(rule));
-        reader.read(size, member, rule);
-    });
+    std::visit([&](auto& s) { read_parameters(reader, s); }, shape);
 }
 
 void AnyShape::write(EffectiveWriter& out, const char* key, const Shape& shape) const {
@@ -125,8 +152,7 @@ class BodyLoader {
 
         // Material 0 is the grey of those that name none.
         if (!body.material.empty()) body.appearance.material = materials_.at(body.material);
-        body.type.shape = body.shape;
-        std::visit([](auto& s) { complete(s); }, body.type.shape);
+        body.type.shape = completed(reader, body.shape);
         if (bounded) set_mass(reader, body);
         if (is_lattice)
             for (const std::uint32_t n : body.lattice->count) body.count *= n;
@@ -176,6 +202,23 @@ class BodyLoader {
     }
 
   private:
+    /// Equal polychora share what was made of them.
+    Shape completed(TableReader& reader, Shape shape) {
+        auto* polychoron = std::get_if<Polychoron>(&shape);
+        if (polychoron == nullptr) {
+            std::visit([](auto& s) { complete(s); }, shape);
+            return shape;
+        }
+        EffectiveWriter parameters;
+        visit_parameters(shape, WriteKeys{parameters});
+        const auto [found, is_new] = polychora_.emplace(parameters.text(), *polychoron);
+        if (is_new) try {
+                complete(found->second);
+            } catch (const InputError& error) {
+                reader.fail(reader.has("vertices") ? "vertices" : "regular", error.what());
+            }
+        return found->second;
+    }
     void check_name(TableReader& reader, bool named, std::size_t number, std::string& name) {
         if (!named) name = fmt::format("body-{}", number);
         if (name.empty() || name.size() > kMaxNameBytes)
@@ -210,6 +253,7 @@ class BodyLoader {
     Scene& scene_;
     EffectiveWriter& out_;
     std::uint64_t total_ = 0;
+    std::unordered_map<std::string, Polychoron> polychora_;  ///< by their parameters
     std::unordered_set<std::string> names_;
     std::unordered_map<std::array<std::uint64_t, 2>, std::uint32_t, FirstWord> types_;
 };

@@ -226,19 +226,37 @@ bool TableReader::read(std::string_view key, double& value, Rule rule) {
 bool TableReader::read_reals(std::string_view key, double* values, std::size_t count,
                              Interval interval) {
     const toml::node* node = find(key);
-    if (node == nullptr) return false;
+    if (node != nullptr) read_array(*node, key, values, count, interval);
+    return node != nullptr;
+}
+
+void TableReader::read_array(const toml::node& node, std::string_view key, double* values,
+                             std::size_t count, Interval interval) const {
     const auto& array =
-        array_of(*node, key, count, fmt::format("expected an array of {} numbers", count));
+        array_of(node, key, count, fmt::format("expected an array of {} numbers", count));
     for (std::size_t i = 0; i < count; ++i)
         values[i] = real_of(*array.get(i), fmt::format("{}[{}]", key, i), interval,
                             expected_text(interval));
-    return true;
 }
 
 bool TableReader::read(std::string_view key, Vec4& value, Rule rule) {
     if (!read_reals(key, value.data(), 4, interval_of(rule))) return false;
     if (rule == Rule::kNonZero && value.cwiseAbs().maxCoeff() < kSmallest)
         fail(key, "expected a direction, not zero");
+    return true;
+}
+
+bool TableReader::read(std::string_view key, std::vector<Vec4>& values) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* array = node->as_array();
+    if (array == nullptr)
+        fail_at(*node, key, "wrong type; expected an array of points, four numbers each");
+    values.resize(array->size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string name = fmt::format("{}[{}]", key, i);
+        read_array(*array->get(i), name, values[i].data(), 4, Interval{});
+    }
     return true;
 }
 

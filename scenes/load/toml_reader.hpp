@@ -74,6 +74,8 @@ class TableReader {
     bool read(std::string_view key, double& value, Interval interval);
     bool read(std::string_view key, Vec4& value, Rule rule);
     bool read(std::string_view key, double& value, Rule rule);
+    /// An array of points.
+    bool read(std::string_view key, std::vector<Vec4>& values);
     bool read(std::string_view key, render::Color& value, Interval interval);
     bool read(std::string_view key, Bivector& value);
     bool read(std::string_view key, bool& value);
@@ -117,6 +119,8 @@ class TableReader {
                        std::span<const std::string_view> names) const;
     const toml::array& array_of(const toml::node& node, std::string_view key, std::size_t count,
                                 std::string_view expected) const;
+    void read_array(const toml::node& node, std::string_view key, double* values, std::size_t count,
+                    Interval interval) const;
     bool read_reals(std::string_view key, double* values, std::size_t count, Interval interval);
 
     const toml::table& table_;

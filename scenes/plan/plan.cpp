@@ -102,7 +102,7 @@ void decide_physics(const Scene& scene, Plan& plan) {
                 "what has a fixed rotation");
     plan.decide("gyroscopic term and 6x6 inertia", needs.uneven_inertia,
                 "there are bodies whose inertia depends on the direction",
-                needs.turning ? "what turns are spheres and cubes: their inertia is one number"
+                needs.turning ? "what turns has one number for its inertia, as spheres and cubes"
                               : "nothing turns");
     if (plan.movable_bodies == 0)
         plan.decide("contacts", false, "", "no body can be moved by them");
@@ -121,6 +121,9 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           spheres * kSphereStepBytes +
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
+    for (const BodyType& type : scene.bodies.types)
+        if (const auto* polychoron = std::get_if<Polychoron>(&type.shape))
+            bytes += shared_bytes(*polychoron);
     const render::Channels& channels = scene.render.channels;
     if (channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
     if (channels.cryptomatte)

@@ -120,8 +120,9 @@ FreePath::FreePath(const Simulation& simulation, const StepData& step, BodyId id
     bound_turning();
 }
 
-/// Where the angular velocity wanders, its energy bounds each of its components in the body frame,
-/// |omega_ij| <= sqrt(2E/I_ij), and with them the speed of a point at r, v_i = sum omega_ij r_j.
+/// Where the angular velocity wanders, its energy bounds each of its components along principal
+/// axes, |omega_ij| <= sqrt(2E/I_ij), and with them the speed of a point at r, v_i = sum omega_ij
+/// r_j.
 void FreePath::bound_turning() {
     const Bivector& omega = start_.angular_velocity;
     if (type_->arm == 0 || omega == Bivector{}) return;
@@ -135,8 +136,9 @@ void FreePath::bound_turning() {
         std::sqrt(std::max(0.0, dot(omega, angular_momentum(*type_, start_.rotor, omega))));
     const Bivector most{root / std::sqrt(I.xy), root / std::sqrt(I.xz), root / std::sqrt(I.xw),
                         root / std::sqrt(I.yz), root / std::sqrt(I.yw), root / std::sqrt(I.zw)};
-    const Vec4 r = std::visit(
-        [](const auto& shape) { return half_extents(shape, Mat4::Identity()); }, *shape_);
+    const Mat4 to_principal = to_matrix(reverse(type_->axes));
+    const Vec4 r =
+        std::visit([&](const auto& shape) { return half_extents(shape, to_principal); }, *shape_);
     const Vec4 v{most.xy * r[1] + most.xz * r[2] + most.xw * r[3],
                  most.xy * r[0] + most.yz * r[2] + most.yw * r[3],
                  most.xz * r[0] + most.yz * r[1] + most.zw * r[3],

@@ -103,7 +103,8 @@ Bivector missing_turn(const Bivector& half_turn, const Bivector& momentum) {
     return missing;
 }
 
-void turn_by_midpoint(const TypeProperties& type, double h, Rotor& rotor, Bivector& omega) {
+void turn_by_midpoint(const TypeProperties& type, double h, Rotor& body, Bivector& omega) {
+    Rotor rotor = principal_rotor(type, body);
     const Bivector omega_body = rotate(reverse(rotor), omega);
     const double pieces = std::clamp(std::ceil(h * norm(omega) / kLargestAngle), 1.0, kMostPieces);
     const double piece = h / pieces;
@@ -118,6 +119,7 @@ void turn_by_midpoint(const TypeProperties& type, double h, Rotor& rotor, Bivect
             projected_to_spin4(rotor * Rotor{1, -half_turn, 0} * exp(-missing_turn(half_turn, P)));
     }
     omega = rotate(rotor, scaled(type.inverse_inertia, P));
+    body = type.has_axes ? projected_to_spin4(rotor * reverse(type.axes)) : rotor;
 }
 
 }  // namespace

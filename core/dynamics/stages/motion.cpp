@@ -18,9 +18,9 @@ void advance_half(const Simulation& simulation, StepData& step, BodyId id) {
                 step.angular_velocity[id]);
 }
 
-/// The sum over the body's planes of 1/I times the plane, seen from the world, times itself.
+/// The sum over the principal planes of 1/I times the plane, seen from the world, times itself.
 BivectorMap world_inverse_inertia(const TypeProperties& type, const Rotor& rotor) {
-    const Mat4 R = to_matrix(rotor);
+    const Mat4 R = to_matrix(principal_rotor(type, rotor));
     const Bivector& d = type.inverse_inertia;
     BivectorMap map = BivectorMap::Zero();
     const auto add = [&](int k, int l, double inverse) {

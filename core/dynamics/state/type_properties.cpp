@@ -32,6 +32,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.inertia = std::visit(
         [&](const auto& shape) { return plane_inertias(second_moments(shape, type.mass)); },
         type.shape);
+    if (const Rotor* axes = principal_axes_of(type.shape)) p.has_axes = true, p.axes = *axes;
     p.radius = bounding_radius(type.shape);
     p.inertia = at_least(kLeastInertia * p.mass * p.radius * p.radius, p.inertia);
     const double least_half_size = std::visit(
@@ -50,7 +51,7 @@ TypeProperties properties_of(const BodyType& type) {
     return p;
 }
 
-/// Applies an operator that is diagonal in the body frame.
+/// Applies an operator that is diagonal in a frame.
 Bivector apply(const Bivector& diagonal, const Rotor& rotor, const Bivector& b) {
     return rotate(rotor, scaled(diagonal, rotate(reverse(rotor), b)));
 }
@@ -66,11 +67,11 @@ std::vector<TypeProperties> type_properties(const Bodies& bodies) {
 
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse) {
     if (type.isotropic) return type.inverse_inertia.xy * impulse;
-    return apply(type.inverse_inertia, rotor, impulse);
+    return apply(type.inverse_inertia, principal_rotor(type, rotor), impulse);
 }
 
 Bivector angular_momentum(const TypeProperties& type, const Rotor& rotor, const Bivector& omega) {
-    return apply(type.inertia, rotor, omega);
+    return apply(type.inertia, principal_rotor(type, rotor), omega);
 }
 
 }  // namespace tesserae

@@ -11,11 +11,13 @@ namespace tesserae {
 struct TypeProperties {
     double mass = 0;           ///< [kg]; 0 if unbounded
     double inverse_mass = 0;   ///< [1/kg]; 0 if the position is fixed
-    Bivector inertia;          ///< body frame, diagonal: I_ij = J_i + J_j [kg m^2]
+    Bivector inertia;          ///< principal axes, diagonal: I_ij = J_i + J_j [kg m^2]
     Bivector inverse_inertia;  ///< the inverse of each, as contacts see it; 0 if the rotation is
                                ///< fixed, and of a hypersphere without friction, which no contact
                                ///< turns: normals go through its centre
     bool isotropic = true;     ///< all six inverses are equal
+    bool has_axes = false;     ///< the principal axes are not the body's
+    Rotor axes;                ///< from principal axes to the body's
     bool bounded = false;
     bool movable = false;  ///< contacts can change its motion
     bool falls = false;    ///< gravity acts on it
@@ -30,6 +32,11 @@ struct TypeProperties {
 
 /// @return one entry for each of bodies.types
 std::vector<TypeProperties> type_properties(const Bodies& bodies);
+
+/// From a type's principal axes to the world.
+inline Rotor principal_rotor(const TypeProperties& type, const Rotor& rotor) {
+    return type.has_axes ? rotor * type.axes : rotor;
+}
 
 /// What an angular impulse [N m s, world] does to the angular velocity of a body so turned.
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse);

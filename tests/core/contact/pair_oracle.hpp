@@ -194,15 +194,16 @@ struct PairErrors {
     }
 };
 
+/// @param list   what was found for the pair
 template <class A, class B>
-void measure(const Placed<A>& a, const Placed<B>& b, PairErrors& errors) {
+void measure(const Placed<A>& a, const Placed<B>& b, const std::vector<Contact>& list,
+             PairErrors& errors) {
     // Seen from A: at 1e4 m even a long double has no digits to spare.
     Zonotope za = a.zonotope(), zb = b.zonotope();
     const LVec origin = za.centre;
     zb.centre -= origin;
     za.centre.setZero();
     const long double size = zb.centre.norm() + za.size() + zb.size();
-    const std::vector<Contact> list = contacts_of(a, b);
     ASSERT_FALSE(list.empty());
     for (std::size_t i = 0; i < list.size(); ++i) {
         ASSERT_NEAR(list[i].normal.norm(), 1, 1e-15);
@@ -231,6 +232,11 @@ void measure(const Placed<A>& a, const Placed<B>& b, PairErrors& errors) {
         else
             note(errors.outside, std::max(to_a, to_b) / place);
     }
+}
+
+template <class A, class B>
+void measure(const Placed<A>& a, const Placed<B>& b, PairErrors& errors) {
+    measure(a, b, contacts_of(a, b), errors);
 }
 
 }  // namespace tesserae

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <variant>
@@ -46,10 +48,64 @@ auto bounded_of(const std::variant<S...>&) {
 /// A shape that joins the list joins every property suite.
 using BoundedShapes = decltype(bounded_of(Shape{}));
 
+/// The point of a hull nearest to the origin, by Wolfe's method (1976) in long double.
+inline LVec nearest_of_hull(const std::vector<LVec>& points) {
+    using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+    using Numbers = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+    const auto least = [&](const LVec& x) {
+        return std::min_element(points.begin(), points.end(),
+                                [&](const LVec& a, const LVec& b) { return a.dot(x) < b.dot(x); });
+    };
+    long double scale = 0;
+    for (const LVec& p : points) scale = std::max(scale, p.norm());
+    std::vector<LVec> face = {*least(points[0])};
+    std::vector<long double> weight = {1};
+    LVec x = face[0];
+    for (int step = 0; step < 1000; ++step) {
+        const LVec next = *least(x);
+        if (x.dot(x - next) <= 1e-18L * scale * x.norm()) break;
+        if (std::find(face.begin(), face.end(), next) != face.end()) break;
+        face.push_back(next), weight.push_back(0);
+        for (;;) {
+            // The point of the face's space nearest to the origin.
+            const auto edges = static_cast<Eigen::Index>(face.size() - 1);
+            std::vector<long double> wanted(face.size(), 1);
+            if (edges > 0) {
+                Matrix E(4, edges);
+                for (Eigen::Index i = 0; i < edges; ++i)
+                    E.col(i) = face[static_cast<std::size_t>(i) + 1] - face[0];
+                const Numbers t = E.colPivHouseholderQr().solve(Numbers(-face[0]));
+                for (Eigen::Index i = 0; i < edges; ++i) {
+                    wanted[static_cast<std::size_t>(i) + 1] = t[i];
+                    wanted[0] -= t[i];
+                }
+            }
+            long double part = 1;
+            for (std::size_t i = 0; i < face.size(); ++i)
+                if (wanted[i] <= 0) part = std::min(part, weight[i] / (weight[i] - wanted[i]));
+            for (std::size_t i = 0; i < face.size(); ++i)
+                weight[i] += part * (wanted[i] - weight[i]);
+            const bool is_inside = part == 1;
+            for (std::size_t i = face.size(); i-- > 0;)
+                if (weight[i] <= 1e-19L && face.size() > 1) {
+                    face.erase(face.begin() + static_cast<std::ptrdiff_t>(i));
+                    weight.erase(weight.begin() + static_cast<std::ptrdiff_t>(i));
+                }
+            if (is_inside) break;
+        }
+        x.setZero();
+        for (std::size_t i = 0; i < face.size(); ++i) x += weight[i] * face[i];
+    }
+    return x;
+}
+
 /// FORMULAS 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho. Its
-/// distance is found by descent on the t_k one at a time, not by the rooms' clamping.
+/// distance is found by descent on the t_k one at a time, not by the rooms' clamping. A polychoron
+/// is the hull of its points.
 struct Oracle {
     std::vector<LVec> generators;
+    std::vector<LVec> points;                          ///< of a hull
+    std::vector<std::pair<LVec, long double>> planes;  ///< of its cells
     long double rho = 0;
     double size;  ///< what the accuracies in room.hpp are relative to
 
@@ -60,14 +116,51 @@ struct Oracle {
         for (int i = 0; i < 4; ++i) generators.push_back(LVec::Unit(i) * (s.size[i] / 2.0L));
     }
 
+    explicit Oracle(const Polychoron& s) : size(bounding_radius(s)) {
+        const Hull& hull = s.body->hull;
+        for (const Vec4& vertex : hull.vertices) points.push_back(vertex.cast<long double>());
+        for (const HullCell& cell : hull.cells) {
+            // The normal again, orthogonal to all edges from the first vertex.
+            const LVec first = points[cell.vertices[0]];
+            LVec n = cell.plane.normal.cast<long double>(), mean = LVec::Zero();
+            std::vector<LVec> edges;
+            for (const auto i : cell.vertices) {
+                edges.push_back((points[i] - first) / size);
+                mean += points[i] / static_cast<long double>(cell.vertices.size());
+            }
+            for (int dimension = 0; dimension < 3; ++dimension) {
+                const LVec longest =
+                    std::max_element(edges.begin(), edges.end(), [](const LVec& a, const LVec& b) {
+                        return a.norm() < b.norm();
+                    })->normalized();
+                for (LVec& edge : edges) edge -= longest.dot(edge) * longest;
+                n -= longest.dot(n) * longest;
+            }
+            n.normalize();
+            planes.push_back({n, n.dot(mean)});
+        }
+    }
+
     /// max of d . x over the shape
     long double support(const LVec& d) const {
+        if (!points.empty()) {
+            long double most = points[0].dot(d);
+            for (const LVec& p : points) most = std::max(most, p.dot(d));
+            return most;
+        }
         long double sum = rho * d.norm();
         for (const LVec& g : generators) sum += std::abs(g.dot(d));
         return sum;
     }
     /// Distance of a point outside; 0 inside.
     long double outside(LVec p) const {
+        if (!points.empty()) {
+            const long double deepest = deepest_plane(p);
+            if (deepest <= 0) return 0;
+            std::vector<LVec> seen;
+            for (const LVec& q : points) seen.push_back((q - p) / size);
+            return std::max(deepest, nearest_of_hull(seen).norm() * size);
+        }
         std::vector<long double> t(generators.size(), 0);
         for (int sweep = 0; sweep < 3; ++sweep)
             for (std::size_t k = 0; k < t.size(); ++k) {
@@ -82,10 +175,14 @@ struct Oracle {
         const long double distance = p.norm() - rho;
         return distance > 1e-18L * size ? distance : 0;
     }
+    bool holds(const LVec& p) const {
+        return points.empty() ? !(outside(p) > 0) : deepest_plane(p) <= 0;
+    }
     /// Exact inside too: the depth is the least of support(n) - n . p over all unit n. For a box
     /// one of its cell normals has it; for a ball about a core it is at most rho, the radial one's.
     long double signed_distance(const LVec& p) const {
         if (const long double distance = outside(p); distance > 0) return distance;
+        if (!points.empty()) return deepest_plane(p);
         if (rho == 0) {
             long double deepest = -support(LVec::UnitX());
             for (const LVec& g : generators)
@@ -97,6 +194,12 @@ struct Oracle {
         for (const LVec& g : generators)
             if (g.norm() > 0) radial -= std::clamp(p.dot(g) / g.squaredNorm(), -1.0L, 1.0L) * g;
         return radial.norm() - rho;
+    }
+    long double deepest_plane(const LVec& p) const {
+        long double deepest = -std::numeric_limits<long double>::infinity();
+        for (const auto& [normal, offset] : planes)
+            deepest = std::max(deepest, normal.dot(p) - offset);
+        return deepest;
     }
 };
 
@@ -118,6 +221,33 @@ inline Hyperbox random_shape(RandomGeometry& random) {
     return box;
 }
 
+inline Polychoron hull_shape(std::vector<Vec4> vertices) {
+    Polychoron shape;
+    shape.regular = RegularPolychoron::kNone;
+    shape.vertices = std::move(vertices);
+    complete(shape);
+    return shape;
+}
+inline Polychoron regular_shape(RegularPolychoron which, double radius) {
+    Polychoron shape;
+    shape.regular = which;
+    shape.radius = radius;
+    complete(shape);
+    return shape;
+}
+/// A regular one, or the hull of points that are stretched along the axes.
+template <>
+inline Polychoron random_shape(RandomGeometry& random) {
+    if (random.uniform(0, 1) < 0.3)
+        return regular_shape(static_cast<RegularPolychoron>(random.uniform(1, 5)),
+                             random.log_uniform(0.1, 10));
+    Vec4 half;
+    for (double& h : half) h = random.log_uniform(0.1, 10);
+    std::vector<Vec4> points(static_cast<std::size_t>(random.uniform(5, 25)));
+    for (Vec4& p : points) p = random.in_box(half);
+    return hull_shape(points);
+}
+
 /// Tiny, huge, stretched 1e4 to 1, without a core.
 template <class S>
 std::vector<S> odd_shapes();
@@ -137,13 +267,48 @@ inline std::vector<Hyperbox> odd_shapes() {
             {1e-150 * Vec4::Ones()}, {1e150 * Vec4::Ones()}};
 }
 
-/// All odd shapes, then random ones, `count` in all.
+/// Also with points inside, on faces and twice, and with all cells alike.
+template <>
+inline std::vector<Polychoron> odd_shapes() {
+    const auto box = [](const Vec4& half) {
+        std::vector<Vec4> corners;
+        for (unsigned signs = 0; signs < 16; ++signs) {
+            corners.push_back(half);
+            for (int i = 0; i < 4; ++i)
+                if (signs >> i & 1) corners.back()[i] = -half[i];
+        }
+        return corners;
+    };
+    std::vector<Vec4> crowded = box(Vec4::Ones());
+    crowded.insert(crowded.end(), {{0, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {1, 1, 1, 0}});
+    crowded.push_back(crowded.front());
+    using enum RegularPolychoron;
+    return {regular_shape(k24Cell, 1),        regular_shape(k16Cell, 1e-6),
+            regular_shape(k5Cell, 1e6),       hull_shape(box({1e4, 1, 1, 1})),
+            hull_shape(box({1, 1e-4, 1, 1})), hull_shape(crowded),
+            regular_shape(k8Cell, 1e-150),    regular_shape(k24Cell, 1e150)};
+}
+
+/// How much of a suite a shape gets whose oracle takes long.
+template <class S>
+constexpr double kShare = std::is_same_v<S, Polychoron> ? 0.2 : 1;
+
+/// All odd shapes, then random ones, that share of `count` in all.
 template <class S>
 std::vector<S> sample_shapes(RandomGeometry& random, std::size_t count) {
     std::vector<S> shapes = odd_shapes<S>();
-    while (shapes.size() < count) shapes.push_back(random_shape<S>(random));
+    while (static_cast<double>(shapes.size()) < kShare<S> * static_cast<double>(count))
+        shapes.push_back(random_shape<S>(random));
     return shapes;
 }
+
+/// Makes a shape's parameter so many times as large.
+inline void scale_parameter(double& value, double factor) { value *= factor; }
+inline void scale_parameter(Vec4& value, double factor) { value *= factor; }
+inline void scale_parameter(std::vector<Vec4>& values, double factor) {
+    for (Vec4& value : values) value *= factor;
+}
+inline void scale_parameter(RegularPolychoron&, double) {}
 
 /// A point in or around the shape: half of them in a box 1.5 times its bounds, the others pulled to
 /// the surface or onto the axes, where distances have their edges.

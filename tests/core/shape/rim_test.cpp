@@ -85,9 +85,9 @@ TYPED_TEST(ShapeRim, IsTheLeastRatioOfDistanceAlongTheRay) {
                                 << o.transpose() << ", " << d.transpose();
                             (expected < 0 ? entering : expected < 1 ? passing : clear) += 1;
                         });
-    EXPECT_GT(passing, 1000);
-    EXPECT_GT(entering, 1000);
-    EXPECT_GT(clear, 100);
+    EXPECT_GT(passing, kShare<TypeParam> * 1000);
+    EXPECT_GT(entering, kShare<TypeParam> * 1000);
+    EXPECT_GT(clear, kShare<TypeParam> * 100);
 }
 
 TYPED_TEST(ShapeRim, CountsWhatComesBeforeTheLimitOnly) {
@@ -103,7 +103,7 @@ TYPED_TEST(ShapeRim, CountsWhatComesBeforeTheLimitOnly) {
                 << o.transpose() << ", " << d.transpose() << ", " << limit;
             cut += expected < 0.9 && expected > rim(shape, o, d, {}).sine + error;
         });
-    EXPECT_GT(cut, 300);
+    EXPECT_GT(cut, kShare<TypeParam> * 300);
 }
 
 TYPED_TEST(ShapeRim, KeepsItsBitsInAnyRangeThatHoldsIt) {

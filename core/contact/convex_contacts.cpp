@@ -1,0 +1,187 @@
+#include "core/contact/convex_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/contact/manifold.hpp"
+
+namespace tesserae {
+namespace {
+
+/// Separations along a cell's normal that are this part of the size from the largest are it: bodies
+/// that lie on a cell do not lose it by rounding.
+constexpr double kFlush = 1e-11;
+/// A normal with this much of a cell's has more points over that cell (25 degrees), and a piece
+/// that faces it so is one that points of the cell lie over.
+constexpr double kCellPart = 0.9;
+/// Cells are larger by this part of the size for clipping, so that a body that lies along a border
+/// does not lose and win points by rounding.
+constexpr double kBorder = 1e-10;
+
+/// Points nearer than this part of the size are one.
+constexpr double kSamePoint = 1e-6;
+
+// What a point is called: what kind it is, whose, and of which vertices.
+enum class PointKind : std::uint32_t { kNearest, kVertex, kEdgeBegin, kEdgeEnd };
+std::uint32_t name_of(PointKind kind, bool of_b, std::uint32_t first, std::uint32_t second) {
+    return static_cast<std::uint32_t>(kind) << 28 | (of_b ? 1u << 27 : 0u) | first << 12 | second;
+}
+
+/// The part of the segment p + t d with 0 <= t <= 1 that is within all sides.
+struct Clipped {
+    double begin = 0, end = 1;
+    bool is_empty() const { return !(begin <= end); }
+};
+Clipped clipped(const Vec4& p, const Vec4& d, const std::vector<HalfSpace>& sides, double border) {
+    Clipped part;
+    for (const HalfSpace& side : sides) {
+        const double height = side.normal.dot(p) - side.offset - border;
+        const double slope = side.normal.dot(d);
+        if (slope == 0) {
+            if (height > 0) return {1, 0};
+            continue;
+        }
+        const double meets = -height / slope;
+        if (slope < 0)
+            part.begin = std::max(part.begin, meets);
+        else
+            part.end = std::min(part.end, meets);
+    }
+    return part;
+}
+
+bool is_within(const Vec4& p, const std::vector<HalfSpace>& sides, double border) {
+    return std::all_of(sides.begin(), sides.end(), [&](const HalfSpace& side) {
+        return side.normal.dot(p) - side.offset <= border;
+    });
+}
+
+/// Gathers a pair's points along one normal.
+class PieceContacts {
+  public:
+    PieceContacts(const Vec4& normal, double radius_a, double radius_b, double size)
+        : normal_(normal),
+          radius_a_(radius_a),
+          radius_b_(radius_b),
+          size_(size),
+          border_(kBorder * size) {}
+
+    /// Corners of a piece that lie over a cell.
+    /// @param of_b   the piece is b's and the cell a's, or the other way round
+    void add_over_cell(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell) {
+        const double rise = (of_b ? 1 : -1) * cell.plane.normal.dot(normal_);
+        if (!cell.is_flat || !(rise >= kCellPart)) return;
+        const auto add = [&](const Vec4& p, std::uint32_t name) {
+            add_point(p, (cell.plane.normal.dot(p) - cell.plane.offset) / rise, of_b, name);
+        };
+        const std::vector<HalfSpace> sides = sides_along_normal(cell);
+        for (std::size_t i = 0; i < piece.vertices.size(); ++i)
+            if (is_within(piece.vertices[i], sides, border_))
+                add(piece.vertices[i], name_of(PointKind::kVertex, of_b, piece.names[i], 0));
+        for (const auto& [from, to] : piece.edges) {
+            const Vec4 &p = piece.vertices[from], d = piece.vertices[to] - p;
+            const Clipped part = clipped(p, d, sides, border_);
+            if (part.is_empty()) continue;
+            const auto name = [&](PointKind kind) {
+                return name_of(kind, of_b, piece.names[from], piece.names[to]);
+            };
+            if (part.begin > 0) add(p + part.begin * d, name(PointKind::kEdgeBegin));
+            if (part.end < 1) add(p + part.end * d, name(PointKind::kEdgeEnd));
+        }
+    }
+
+    /// The nearest points; another that is as near stands for them.
+    void add_nearest(const ConvexSeparation& nearest, double separation) {
+        for (ContactPoint& point : points_)
+            if (point.separation <= separation + border_) {
+                point.separation = separation;
+                return;
+            }
+        const Vec4 middle =
+            0.5 * (nearest.on_a + nearest.on_b) + 0.5 * (radius_a_ - radius_b_) * normal_;
+        points_.push_back({middle, separation, name_of(PointKind::kNearest, false, 0, 0)});
+    }
+
+    /// @param separation   of the pair: corners a hair beyond a border are no nearer
+    void put(double separation, const Vec4& origin, double margin, PairContacts& out) {
+        for (ContactPoint& p : points_) p.separation = std::max(p.separation, separation);
+        std::erase_if(points_, [&](const ContactPoint& p) { return !(p.separation <= margin); });
+        const auto is_before = [](const ContactPoint& p, const ContactPoint& q) {
+            return p.separation != q.separation ? p.separation < q.separation
+                                                : p.feature < q.feature;
+        };
+        if (points_.size() > kManifoldInput) {
+            std::sort(points_.begin(), points_.end(), is_before);
+            points_.resize(kManifoldInput);
+        }
+        const std::size_t count = reduce_manifold(points_, normal_);
+        for (std::size_t i = 0; i < count; ++i)
+            out.add(points_[i].feature, normal_, points_[i].separation, origin + points_[i].point);
+    }
+
+  private:
+    /// What holds the points that lie over a cell, seen along the contact's normal.
+    std::vector<HalfSpace> sides_along_normal(const SurfacePiece& cell) const {
+        std::vector<HalfSpace> sides = cell.sides;
+        for (HalfSpace& side : sides) {
+            const double lean = side.normal.dot(normal_) / cell.plane.normal.dot(normal_);
+            side.normal -= lean * cell.plane.normal;
+            side.offset -= lean * cell.plane.offset;
+        }
+        return sides;
+    }
+    /// @param height   of a core's point over the other's plane, along the normal
+    void add_point(const Vec4& p, double height, bool of_b, std::uint32_t name) {
+        const double separation = height - radius_a_ - radius_b_;
+        const Vec4 to_other = of_b ? Vec4(-normal_) : normal_;
+        const double own = of_b ? radius_b_ : radius_a_;
+        const Vec4 middle = p + (own + 0.5 * separation) * to_other;
+        // Where corners of both bodies meet they are one point.
+        const double near = kSamePoint * size_;
+        for (const ContactPoint& point : points_)
+            if ((point.point - middle).squaredNorm() <= near * near) return;
+        points_.push_back({middle, separation, name});
+    }
+
+    const Vec4& normal_;
+    double radius_a_, radius_b_, size_, border_;
+    std::vector<ContactPoint> points_;
+};
+
+/// How far apart two cores are along a direction.
+double gap_along(const ConvexBody& a, const ConvexBody& b, const Vec4& direction) {
+    return direction.dot(b.core(-direction)) - direction.dot(a.core(direction));
+}
+
+}  // namespace
+
+void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess, double size,
+                     const Vec4& origin, double margin, PairContacts& out) {
+    const double radii = a.radius + b.radius;
+    const ConvexSeparation nearest = separation_of(a.core, b.core, guess, size);
+    if (!(nearest.distance - radii <= margin)) return;
+    Vec4 normal = nearest.normal;
+    double distance = nearest.distance;
+    SurfacePiece of_a, of_b;
+    a.piece_along(normal, of_a);
+    b.piece_along(-normal, of_b);
+    // A cell's own normal, where it serves as well.
+    const auto try_normal = [&](const SurfacePiece& piece, double sign) {
+        if (!piece.is_flat) return false;
+        const Vec4 own = sign * piece.plane.normal;
+        const double gap = gap_along(a, b, own);
+        if (!(gap >= nearest.distance - kFlush * size)) return false;
+        normal = own, distance = gap;
+        return true;
+    };
+    if (!try_normal(of_a, 1)) try_normal(of_b, -1);
+
+    PieceContacts points(normal, a.radius, b.radius, size);
+    points.add_over_cell(of_b, true, of_a);
+    points.add_over_cell(of_a, false, of_b);
+    points.add_nearest(nearest, distance - radii);
+    points.put(distance - radii, origin, margin, out);
+}
+
+}  // namespace tesserae

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/contact.hpp"
+#include "core/convex/convex_separation.hpp"
+#include "core/convex/hull.hpp"
+
+namespace tesserae {
+
+/// A piece of a body's surface: a flat cell, or one of less dimensions, as a polyhedron in the
+/// world.
+struct SurfacePiece {
+    bool is_flat = false;  ///< a cell, in the hyperplane that bounds `plane`, within its sides
+    HalfSpace plane{};
+    std::vector<HalfSpace> sides;
+    std::vector<Vec4> vertices;
+    std::vector<std::uint16_t> names;                 ///< of the vertices
+    std::vector<std::array<std::uint16_t, 2>> edges;  ///< by the places of their ends
+};
+
+/// A body as the general pair function sees it: all points within a radius of a convex core, about
+/// an origin that a pair's two bodies share.
+struct ConvexBody {
+    Support core;
+    double radius;
+    /// Puts the piece of the core's surface that looks most along a direction into an empty one.
+    FunctionRef<void(const Vec4& direction, SurfacePiece& piece)> piece_along;
+};
+
+/// Contact points of any two convex bodies: their separation, and where a cell lies near the other
+/// body's piece that faces it the corners of both, each clipped to the other along the normal.
+/// @param guess    from a to b, not zero
+/// @param size     sum of the bounding radii [m]
+/// @param origin   of both bodies' coordinates, world
+void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess, double size,
+                     const Vec4& origin, double margin, PairContacts& out);
+
+}  // namespace tesserae

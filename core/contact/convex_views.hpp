@@ -1,0 +1,60 @@
+#pragma once
+
+#include "core/contact/convex_contacts.hpp"
+#include "core/shape/hyperbox.hpp"
+#include "core/shape/hypercapsule.hpp"
+#include "core/shape/polychoron.hpp"
+
+// Shapes as the general pair function sees them: a core in the body's frame, what it is widened by,
+// and the piece of its surface that looks along a direction.
+namespace tesserae {
+
+inline double core_radius(const Polychoron&) { return 0; }
+void piece_along(const Polychoron& shape, const Vec4& direction, SurfacePiece& piece);
+
+inline double core_radius(const Hyperbox&) { return 0; }
+void piece_along(const Hyperbox& shape, const Vec4& direction, SurfacePiece& piece);
+
+inline double core_radius(const Hypercapsule& shape) { return shape.radius; }
+void piece_along(const Hypercapsule& shape, const Vec4& direction, SurfacePiece& piece);
+
+/// Farthest point of the core.
+inline Vec4 core_support(const Polychoron& s, const Vec4& direction) {
+    return support(s, direction);
+}
+inline Vec4 core_support(const Hyperbox& s, const Vec4& direction) { return support(s, direction); }
+inline Vec4 core_support(const Hypercapsule& s, const Vec4& direction) {
+    return Vec4(0, direction[1] < 0 ? -0.5 * s.height : 0.5 * s.height, 0, 0);
+}
+
+/// Moves a piece from the body's frame.
+void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece);
+
+/// The general pair function for two shapes of which these views exist.
+template <class A, class B>
+void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b, double margin,
+                      PairContacts& out) {
+    const Mat4 turn_a = to_matrix(pose_a.rotor), turn_b = to_matrix(pose_b.rotor);
+    const Vec4 between = pose_b.position - pose_a.position;
+    const double size = bounding_radius(a) + bounding_radius(b);
+    if (!(stable_norm(between) - size <= margin)) return;
+    const auto core_a = [&](const Vec4& direction) -> Vec4 {
+        return turn_a * core_support(a, turn_a.transpose() * direction);
+    };
+    const auto core_b = [&](const Vec4& direction) -> Vec4 {
+        return between + turn_b * core_support(b, turn_b.transpose() * direction);
+    };
+    const auto piece_a = [&](const Vec4& direction, SurfacePiece& piece) {
+        piece_along(a, turn_a.transpose() * direction, piece);
+        move_to(turn_a, Vec4::Zero(), piece);
+    };
+    const auto piece_b = [&](const Vec4& direction, SurfacePiece& piece) {
+        piece_along(b, turn_b.transpose() * direction, piece);
+        move_to(turn_b, between, piece);
+    };
+    const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
+    convex_contacts({core_a, core_radius(a), piece_a}, {core_b, core_radius(b), piece_b}, guess,
+                    size, pose_a.position, margin, out);
+}
+
+}  // namespace tesserae

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/algebra/vector.hpp"
+#include "core/simd/simd.hpp"
+
+namespace tesserae {
+
+/// Many functions normal . x - offset, four side by side.
+class LinearForms {
+  public:
+    void add(const Vec4& normal, double offset) {
+        if (count_ % 4 == 0) fours_.emplace_back();
+        Four& four = fours_.back();
+        // The rest of the four repeats it: of equal ones the first counts.
+        for (std::size_t lane = count_ % 4; lane < 4; ++lane) {
+            for (std::size_t axis = 0; axis < 4; ++axis)
+                four.normal[axis][lane] = normal[static_cast<Eigen::Index>(axis)];
+            four.offset[lane] = offset;
+        }
+        ++count_;
+    }
+
+    struct Largest {
+        std::uint32_t number;  ///< of equal ones the lowest
+        double value;
+    };
+    Largest largest_at(const Vec4& x) const {
+        using namespace simd;
+        Double4 best = all_four(-std::numeric_limits<double>::infinity());
+        Mask4 place = {};
+        for (std::size_t i = 0; i < fours_.size(); ++i) {
+            const Double4 value = slopes(fours_[i], x) - fours_[i].offset;
+            const Mask4 is_larger = value > best;
+            const auto here = static_cast<long long>(i);
+            best = is_larger ? value : best;
+            place = is_larger ? Mask4{here, here, here, here} : place;
+        }
+        Largest largest = {0, best[0]};
+        largest.number = static_cast<std::uint32_t>(4 * place[0]);
+        for (std::uint32_t lane = 1; lane < 4; ++lane) {
+            const auto number = static_cast<std::uint32_t>(4 * place[lane]) + lane;
+            if (best[lane] > largest.value ||
+                (best[lane] == largest.value && number < largest.number))
+                largest = {number, best[lane]};
+        }
+        return largest;
+    }
+
+    /// Where on a ray all of them are at most 0: from `enter` to `leave`, nowhere if that is less.
+    struct Interval {
+        double enter, leave;
+    };
+    Interval not_positive_on(const Vec4& origin, const Vec4& direction) const {
+        using namespace simd;
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        Double4 enter = all_four(-kInfinity), leave = all_four(kInfinity);
+        Mask4 misses = {};
+        for (const Four& four : fours_) {
+            const Double4 height = slopes(four, origin) - four.offset;
+            const Double4 slope = slopes(four, direction);
+            const Double4 meets = -height / slope;
+            enter = slope < 0 ? larger(meets, enter) : enter;
+            leave = slope > 0 ? smaller(meets, leave) : leave;
+            misses |= (slope == 0) & (height > 0);
+        }
+        if (lanes_set(misses) != 0) return {kInfinity, -kInfinity};
+        return {largest_lane(enter), smallest_lane(leave)};
+    }
+
+  private:
+    struct Four {
+        std::array<simd::Double4, 4> normal;
+        simd::Double4 offset;
+    };
+    static simd::Double4 slopes(const Four& four, const Vec4& x) {
+        return four.normal[0] * x[0] + four.normal[1] * x[1] + four.normal[2] * x[2] +
+               four.normal[3] * x[3];
+    }
+
+    std::vector<Four> fours_;
+    std::size_t count_ = 0;
+};
+
+}  // namespace tesserae

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/convex/convex_separation.hpp"
+
+namespace tesserae {
+
+/// A point of the difference, and the point of a that it comes from; b's is on_a - at.
+struct DifferencePoint {
+    Vec4 at, on_a;
+};
+
+/// The Minkowski difference a - b of two bodies, all x - y with x in a and y in b, in units in
+/// which both are about 1 large: squares and cubes of lengths neither overflow nor vanish.
+class MinkowskiDifference {
+  public:
+    MinkowskiDifference(const Support& a, const Support& b, double size)
+        : a_(a),
+          b_(b),
+          // A power of two rounds nothing.
+          unit_(size > 0 && std::isfinite(size) ? std::ldexp(1.0, std::ilogb(size)) : 1),
+          to_units_(1 / unit_) {}
+
+    /// The farthest point along a direction.
+    DifferencePoint support(const Vec4& direction) const {
+        const Vec4 on_a = to_units_ * a_(direction), on_b = to_units_ * b_(-direction);
+        return {on_a - on_b, on_a};
+    }
+    /// The length of the unit [m].
+    double unit() const { return unit_; }
+    /// Below this, in units, a length is rounding.
+    double rounding() const { return rounding_; }
+    /// Learns from a point how large coordinates are.
+    void note_coordinates(const DifferencePoint& p) {
+        const double largest = std::max(p.on_a.cwiseAbs().maxCoeff(), p.at.cwiseAbs().maxCoeff());
+        rounding_ = std::max(rounding_, kRounding * largest);
+    }
+
+  private:
+    /// Two units in the last place of 1; the tolerances are multiples of it. Less, and loops end
+    /// only by lack of progress; more, and it is the error of what is returned.
+    static constexpr double kRounding = 4e-16;
+
+    const Support& a_;
+    const Support& b_;
+    double unit_, to_units_;
+    double rounding_ = kRounding;
+};
+
+}  // namespace tesserae

@@ -1,0 +1,117 @@
+#include <gtest/gtest.h>
+
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/diagnostics/momentum.hpp"
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+BodyType regular_type(RegularPolychoron which, double radius) {
+    Polychoron shape;
+    shape.regular = which;
+    shape.radius = radius;
+    complete(shape);
+    BodyType type;
+    type.shape = shape;
+    return type;
+}
+
+/// A rotor that takes a unit vector to -y.
+Rotor laid_down(const Vec4& normal) {
+    // Two reflections: in the plane between both, then in the one of the target.
+    Vec4 middle = normal - Vec4::UnitY();
+    if (middle.norm() < 1e-9) return exp(Bivector{-0.5 * pi});
+    middle.normalize();
+    const Mat4 first = Mat4::Identity() - 2 * middle * middle.transpose();
+    const Mat4 second = Mat4::Identity() - 2 * Vec4::UnitY() * Vec4::UnitY().transpose();
+    return to_rotor(second * first);
+}
+
+TEST(Polychora, StandOnEachOfTheirCells) {
+    using enum RegularPolychoron;
+    for (const RegularPolychoron which : {k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell}) {
+        const BodyType type = regular_type(which, 1);
+        const auto& cells = std::get<Polychoron>(type.shape).body->hull.cells;
+        // All of them side by side, far apart; of the large ones every fortieth.
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        for (std::size_t i = 0; i<cells.size(); i += cells.size()> 24 ? 40 : 1)
+            add(bodies, type, {3.0 * static_cast<double>(i), cells[i].plane.offset, 0, 0},
+                Vec4::Zero(), {}, laid_down(cells[i].plane.normal));
+        World world(bodies, PhysicsSettings{});
+        run(world, 240);
+        for (BodyId id = 1; id < bodies.size(); ++id) {
+            const Bodies& now = world.bodies();
+            EXPECT_LT((now.position[id] - bodies.position[id]).norm(), 0.004) << int(which);
+            EXPECT_LT((to_matrix(now.rotor[id]) - to_matrix(bodies.rotor[id])).norm(), 0.01)
+                << int(which) << " " << id;
+            EXPECT_LT(now.velocity[id].norm() + norm(now.angular_velocity[id]), 1e-6)
+                << int(which) << " " << id;
+        }
+    }
+}
+
+TEST(Polychora, StandOnOneAnother) {
+    using enum RegularPolychoron;
+    for (const RegularPolychoron which : {k8Cell, k24Cell, k120Cell}) {
+        // A cell down, one up.
+        const BodyType type = regular_type(which, 0.7);
+        const Polychoron& shape = std::get<Polychoron>(type.shape);
+        const Rotor turn = laid_down(shape.body->hull.cells[0].plane.normal);
+        const double inradius = shape.body->hull.cells[0].plane.offset;
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        for (int i = 0; i < 3; ++i)
+            add(bodies, type, {0, (2 * i + 1) * inradius, 0, 0}, Vec4::Zero(), {}, turn);
+        World world(bodies, PhysicsSettings{});
+        run(world, 480);
+        for (BodyId id = 1; id < bodies.size(); ++id) {
+            const Bodies& now = world.bodies();
+            EXPECT_LT((now.position[id] - bodies.position[id]).norm(), 0.02) << int(which);
+            EXPECT_LT(now.velocity[id].norm() + norm(now.angular_velocity[id]), 1e-3)
+                << int(which) << " " << id;
+        }
+    }
+}
+
+/// A body whose principal axes are not its own flies as the same body does whose axes are.
+TEST(Polychora, FlyAlikeWhateverAxesTheyAreGivenIn) {
+    const Rotor turn = exp(Bivector{0.3, -0.5, 0.7, 0.2, 0.4, -0.6});
+    Polychoron straight, turned;
+    straight.regular = turned.regular = RegularPolychoron::kNone;
+    for (unsigned signs = 0; signs < 16; ++signs) {
+        Vec4 corner(0.5, 0.3, 0.9, 0.7);
+        for (int i = 0; i < 4; ++i)
+            if (signs >> i & 1) corner[i] = -corner[i];
+        straight.vertices.push_back(corner);
+        turned.vertices.push_back(rotate(turn, corner));
+    }
+    complete(straight), complete(turned);
+    ASSERT_EQ(principal_axes(straight), nullptr);
+    ASSERT_NE(principal_axes(turned), nullptr);
+    for (const RotationIntegrator integrator :
+         {RotationIntegrator::kEuler, RotationIntegrator::kMidpoint}) {
+        PhysicsSettings settings = without_gravity();
+        settings.integrator = integrator;
+        const auto flown = [&](const Polychoron& shape, const Rotor& rotor) {
+            BodyType type;
+            type.shape = shape;
+            Bodies bodies;
+            add(bodies, type, Vec4::Zero(), Vec4::Zero(), Bivector{3, -1, 2, 0.5, 1, -2}, rotor);
+            World world(bodies, settings);
+            run(world, 240);
+            return world.bodies();
+        };
+        const Rotor start = exp(Bivector{0.1, 0.2, -0.3, 0.4, 0.5, 0.6});
+        const Bodies one = flown(straight, start), other = flown(turned, start * reverse(turn));
+        EXPECT_LT((to_matrix(one.rotor[0]) - to_matrix(other.rotor[0] * turn)).norm(), 1e-9);
+        EXPECT_LT(norm(one.angular_velocity[0] - other.angular_velocity[0]), 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace tesserae
