@@ -79,7 +79,8 @@ class PieceContacts {
         for (std::size_t i = 0; i < piece.vertices.size(); ++i)
             if (is_within(piece.vertices[i], sides, border_))
                 add(piece.vertices[i], name_of(PointKind::kVertex, of_b, piece.names[i], 0));
-        for (const auto& [from, to] : piece.edges) {
+        for (const auto& edge : piece.edges) {
+            const std::size_t from = edge[0], to = edge[1];
             const Vec4 &p = piece.vertices[from], d = piece.vertices[to] - p;
             const Clipped part = clipped(p, d, sides, border_);
             if (part.is_empty()) continue;
