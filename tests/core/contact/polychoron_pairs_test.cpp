@@ -47,16 +47,16 @@ void expect_hulls_exact(std::pair<Placed<A>, Placed<B>> (*draw)(RandomGeometry&)
 }
 
 TEST(PolychoronPairs, AreThoseOfBoxesOnRandomPairs) {
-    expect_hulls_exact<Hyperbox, Hyperbox>(random_pair, 1500, kRandomAccuracy, "hull, hull");
-    expect_hulls_exact<Hyperbox, Hypercapsule>(random_pair, 1000, kRandomAccuracy, "hull, capsule");
-    expect_hulls_exact<Hyperbox, Hypersphere>(random_pair, 1000, kRandomAccuracy, "hull, ball");
+    expect_hulls_exact<Hyperbox, Hyperbox>(random_pair, 400, kRandomAccuracy, "hull, hull");
+    expect_hulls_exact<Hyperbox, Hypercapsule>(random_pair, 300, kRandomAccuracy, "hull, capsule");
+    expect_hulls_exact<Hyperbox, Hypersphere>(random_pair, 300, kRandomAccuracy, "hull, ball");
 }
 
 TEST(PolychoronPairs, AreThoseOfBoxesOnDegeneratePairs) {
-    expect_hulls_exact<Hyperbox, Hyperbox>(degenerate_pair, 1500, kThinAccuracy, "hull, hull");
-    expect_hulls_exact<Hyperbox, Hypercapsule>(degenerate_pair, 1000, kThinAccuracy,
+    expect_hulls_exact<Hyperbox, Hyperbox>(degenerate_pair, 400, kThinAccuracy, "hull, hull");
+    expect_hulls_exact<Hyperbox, Hypercapsule>(degenerate_pair, 300, kThinAccuracy,
                                                "hull, capsule");
-    expect_hulls_exact<Hyperbox, Hypersphere>(degenerate_pair, 1000, kThinAccuracy, "hull, ball");
+    expect_hulls_exact<Hyperbox, Hypersphere>(degenerate_pair, 300, kThinAccuracy, "hull, ball");
 }
 
 /// From the hull of all a - b, in long double where they are apart, by Qhull where they overlap.

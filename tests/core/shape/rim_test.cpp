@@ -59,7 +59,7 @@ void for_rays(std::uint64_t seed, std::size_t shapes, const Check& check) {
     RandomGeometry random(seed);
     for (const S& shape : sample_shapes<S>(random, shapes)) {
         const Oracle oracle(shape);
-        for (int i = 0; i < 60; ++i) {
+        for (int i = 0; i < (std::is_same_v<S, Polychoron> ? 24 : 60); ++i) {
             Vec4 o = sample_point(shape, random);
             if (i % 3 == 0) o *= random.log_uniform(1, 1e4);
             if (i % 5 == 0) {
@@ -85,9 +85,9 @@ TYPED_TEST(ShapeRim, IsTheLeastRatioOfDistanceAlongTheRay) {
                                 << o.transpose() << ", " << d.transpose();
                             (expected < 0 ? entering : expected < 1 ? passing : clear) += 1;
                         });
-    EXPECT_GT(passing, kShare<TypeParam> * 1000);
-    EXPECT_GT(entering, kShare<TypeParam> * 1000);
-    EXPECT_GT(clear, kShare<TypeParam> * 100);
+    EXPECT_GT(passing, kShare<TypeParam> * 333);
+    EXPECT_GT(entering, kShare<TypeParam> * 333);
+    EXPECT_GT(clear, kShare<TypeParam> * 33);
 }
 
 TYPED_TEST(ShapeRim, CountsWhatComesBeforeTheLimitOnly) {
@@ -103,7 +103,7 @@ TYPED_TEST(ShapeRim, CountsWhatComesBeforeTheLimitOnly) {
                 << o.transpose() << ", " << d.transpose() << ", " << limit;
             cut += expected < 0.9 && expected > rim(shape, o, d, {}).sine + error;
         });
-    EXPECT_GT(cut, kShare<TypeParam> * 300);
+    EXPECT_GT(cut, kShare<TypeParam> * 100);
 }
 
 TYPED_TEST(ShapeRim, KeepsItsBitsInAnyRangeThatHoldsIt) {
