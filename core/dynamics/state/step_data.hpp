@@ -194,9 +194,10 @@ inline const std::vector<Bivector>& last_angular_impulses(const Simulation& simu
 }
 
 /// What an angular impulse [N m s, world] does to the angular velocity of a body in this sub-step:
-/// that of its type and rotor.
-inline Bivector angular_response(const Simulation& simulation, const StepData& step, BodyId id,
-                                 const Bivector& impulse) {
+/// that of its type and rotor. Always inlined: a call in every row of every sweep costs a step 7 %.
+[[gnu::always_inline]] inline Bivector angular_response(const Simulation& simulation,
+                                                        const StepData& step, BodyId id,
+                                                        const Bivector& impulse) {
     const TypeProperties& type = simulation.type_of(id);
     if (type.isotropic) return type.inverse_inertia.xy * impulse;
     const BivectorMap& map = step.inverse_inertia[id];
