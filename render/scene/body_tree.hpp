@@ -49,6 +49,14 @@ class BodyTree {
     /// The bodies that no box holds, ascending: the walks leave them to the caller.
     const std::vector<std::uint32_t>& unbounded() const { return unbounded_; }
 
+    /// Calls visit(body index) for every bounded body, neighbours one after the other.
+    template <class Visit>
+    void for_each_bounded(Visit&& visit) const {
+        for (const Leaf& leaf : leaves_)
+            for (std::size_t i = 0; i < kLanes; ++i)
+                if (leaf.radius[i] == leaf.radius[i]) visit(leaf.body[i]);
+    }
+
     /// A hash of the whole tree, for tests.
     std::uint64_t fingerprint() const;
 

@@ -9,21 +9,26 @@ namespace tesserae::render {
 
 RayScene::RayScene(const PlacedBodies& placed, const BodyTree& tree, const Settings& settings)
     : placed_(placed), tree_(tree), settings_(settings) {
-    for (const PlacedBody& body : placed.bodies) {
-        const auto* ball = std::get_if<Hypersphere>(body.shape);
-        const auto* box = std::get_if<Hyperbox>(body.shape);
-        if (body.moves()) {
-            slots_.push_back({kOther, static_cast<std::uint32_t>(slots_.size())});
-        } else if (ball && body.turn == PlacedBody::kNotTurned) {
-            slots_.push_back({kBall, static_cast<std::uint32_t>(balls_.size())});
-            balls_.push_back({body.centre, *ball});
-        } else if (box) {
-            slots_.push_back({kBox, static_cast<std::uint32_t>(boxes_.size())});
-            boxes_.push_back({body.centre, placed.turns[body.turn], *box});
-        } else {
-            slots_.push_back({kOther, static_cast<std::uint32_t>(slots_.size())});
-        }
+    // In the order of the leaves: what a ray meets one after the other lies side by side.
+    slots_.resize(placed.bodies.size());
+    for (const std::uint32_t index : tree.unbounded()) slots_[index] = slot_of(index);
+    tree.for_each_bounded([&](std::uint32_t index) { slots_[index] = slot_of(index); });
+}
+
+RayScene::Slot RayScene::slot_of(std::uint32_t index) {
+    const PlacedBody& body = placed_.bodies[index];
+    const auto* ball = std::get_if<Hypersphere>(body.shape);
+    const auto* box = std::get_if<Hyperbox>(body.shape);
+    if (body.moves()) return {kOther, index};
+    if (ball && body.turn == PlacedBody::kNotTurned) {
+        balls_.push_back({body.centre, *ball});
+        return {kBall, static_cast<std::uint32_t>(balls_.size() - 1)};
     }
+    if (box) {
+        boxes_.push_back({body.centre, placed_.turns[body.turn], *box});
+        return {kBox, static_cast<std::uint32_t>(boxes_.size() - 1)};
+    }
+    return {kOther, index};
 }
 
 void RayScene::nearest(std::span<Ray> rays, std::span<Hit> hits, FrameStats& stats) const {

@@ -55,6 +55,7 @@ class RayScene {
         std::uint32_t index;  ///< in balls_, boxes_ or placed_.bodies
     };
 
+    Slot slot_of(std::uint32_t index);
     void nearest_in_stream(std::span<Ray> rays, std::span<Hit> hits, FrameStats& stats) const;
     void find_blocked_in_stream(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                                 FrameStats& stats) const;
