@@ -297,12 +297,13 @@ std::vector<Vec4> bounces(const std::vector<Surface>& surfaces) {
 }
 
 /// They start from the surfaces as the integrator's do, a pixel's first 16 samples at a time.
-Measured bounced(const RayScene& scene, const std::vector<Surface>& surfaces) {
-    const std::vector<Vec4> directions = bounces(surfaces);
+/// @param ask   of a block of rays, how many of them meet something
+template <class Ask>
+Measured by_sixteens(const std::vector<Surface>& surfaces, const std::vector<Vec4>& directions,
+                     Ask&& ask) {
     constexpr std::size_t kTogether = 16;
     Measured m{{}, static_cast<double>(surfaces.size()), {}};
     std::vector<Ray> rays;
-    std::vector<Hit> hits(kTogether);
     volatile std::size_t sink = 0;
     m.time = time_of([&] {
         m.stats = {};
@@ -311,12 +312,29 @@ Measured bounced(const RayScene& scene, const std::vector<Surface>& surfaces) {
             rays.clear();
             for (std::size_t i = begin; i < std::min(begin + kTogether, surfaces.size()); ++i)
                 rays.push_back({surfaces[i].point, directions[i], surfaces[i].body});
-            scene.nearest(rays, std::span(hits).first(rays.size()), m.stats);
-            for (std::size_t i = 0; i < rays.size(); ++i) count += hits[i] ? 1 : 0;
+            count += static_cast<std::size_t>(ask(rays, m.stats));
         }
         sink = count;
     });
     return m;
+}
+
+Measured bounced(const RayScene& scene, const std::vector<Surface>& surfaces) {
+    std::vector<Hit> hits(16);
+    return by_sixteens(surfaces, bounces(surfaces), [&](std::vector<Ray>& rays, FrameStats& stats) {
+        scene.nearest(rays, std::span(hits).first(rays.size()), stats);
+        return std::count_if(hits.begin(), hits.begin() + std::ssize(rays),
+                             [](const Hit& hit) { return bool(hit); });
+    });
+}
+
+Measured shaded(const RayScene& scene, const std::vector<Surface>& surfaces, const Vec4& toward) {
+    std::vector<std::uint8_t> blocked(16);
+    const std::vector<Vec4> directions(surfaces.size(), toward);
+    return by_sixteens(surfaces, directions, [&](std::vector<Ray>& rays, FrameStats& stats) {
+        scene.find_blocked(rays, std::span(blocked).first(rays.size()), stats);
+        return std::count(blocked.begin(), blocked.begin() + std::ssize(rays), 1);
+    });
 }
 
 void measure(int count, Intersector intersector, Rates& rates) {
@@ -341,9 +359,7 @@ void measure(int count, Intersector intersector, Rates& rates) {
     const Interval& opening = scene.opening();
     const RayScene rays(opening.placed, opening.tree, picture.settings);
     const Shadows shadows(opening.placed, opening.tree);
-    const Measured hard = from_surfaces(lit, [&](std::size_t, const Surface& s, FrameStats& stats) {
-        return rays.is_blocked({s.point, sun.toward, s.body}, stats);
-    });
+    const Measured hard = shaded(rays, lit, sun.toward);
     report.row("hard", hard);
     Measured both = {
         {view.time.median + hard.time.median, std::max(view.time.spread, hard.time.spread)},
