@@ -28,14 +28,29 @@ std::uint32_t name_of(PointKind kind, bool of_b, std::uint32_t first, std::uint3
     return static_cast<std::uint32_t>(kind) << 28 | (of_b ? 1u << 27 : 0u) | first << 12 | second;
 }
 
+/// What a piece is within, beside its plane.
+struct Sides {
+    std::vector<HalfSpace> flat;
+    std::vector<RoundSide> round;
+};
+
+bool is_within(const Vec4& p, const Sides& sides, double border) {
+    return std::all_of(
+               sides.flat.begin(), sides.flat.end(),
+               [&](const HalfSpace& side) { return side.normal.dot(p) - side.offset <= border; }) &&
+           std::all_of(sides.round.begin(), sides.round.end(), [&](const RoundSide& side) {
+               return (side.axes * (p - side.centre)).norm() <= side.radius + border;
+           });
+}
+
 /// The part of the segment p + t d with 0 <= t <= 1 that is within all sides.
 struct Clipped {
     double begin = 0, end = 1;
     bool is_empty() const { return !(begin <= end); }
 };
-Clipped clipped(const Vec4& p, const Vec4& d, const std::vector<HalfSpace>& sides, double border) {
+Clipped clipped(const Vec4& p, const Vec4& d, const Sides& sides, double border) {
     Clipped part;
-    for (const HalfSpace& side : sides) {
+    for (const HalfSpace& side : sides.flat) {
         const double height = side.normal.dot(p) - side.offset - border;
         const double slope = side.normal.dot(d);
         if (slope == 0) {
@@ -48,13 +63,21 @@ Clipped clipped(const Vec4& p, const Vec4& d, const std::vector<HalfSpace>& side
         else
             part.end = std::min(part.end, meets);
     }
+    for (const RoundSide& side : sides.round) {
+        const Vec4 from = side.axes * (p - side.centre), along = side.axes * d;
+        const double radius = side.radius + border, square = along.squaredNorm();
+        const double outside = from.squaredNorm() - radius * radius;
+        if (square == 0) {
+            if (outside > 0) return {1, 0};
+            continue;
+        }
+        const double middle = -from.dot(along) / square;
+        const double half = middle * middle - outside / square;
+        if (!(half >= 0)) return {1, 0};
+        part.begin = std::max(part.begin, middle - std::sqrt(half));
+        part.end = std::min(part.end, middle + std::sqrt(half));
+    }
     return part;
-}
-
-bool is_within(const Vec4& p, const std::vector<HalfSpace>& sides, double border) {
-    return std::all_of(sides.begin(), sides.end(), [&](const HalfSpace& side) {
-        return side.normal.dot(p) - side.offset <= border;
-    });
 }
 
 /// Gathers a pair's points along one normal.
@@ -72,24 +95,21 @@ class PieceContacts {
     void add_over_cell(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell) {
         const double rise = (of_b ? 1 : -1) * cell.plane.normal.dot(normal_);
         if (!cell.is_flat || !(rise >= kCellPart)) return;
-        const auto add = [&](const Vec4& p, std::uint32_t name) {
-            add_point(p, (cell.plane.normal.dot(p) - cell.plane.offset) / rise, of_b, name);
-        };
-        const std::vector<HalfSpace> sides = sides_along_normal(cell);
-        for (std::size_t i = 0; i < piece.vertices.size(); ++i)
-            if (is_within(piece.vertices[i], sides, border_))
-                add(piece.vertices[i], name_of(PointKind::kVertex, of_b, piece.names[i], 0));
-        for (const auto& edge : piece.edges) {
-            const std::size_t from = edge[0], to = edge[1];
-            const Vec4 &p = piece.vertices[from], d = piece.vertices[to] - p;
-            const Clipped part = clipped(p, d, sides, border_);
-            if (part.is_empty()) continue;
-            const auto name = [&](PointKind kind) {
-                return name_of(kind, of_b, piece.names[from], piece.names[to]);
-            };
-            if (part.begin > 0) add(p + part.begin * d, name(PointKind::kEdgeBegin));
-            if (part.end < 1) add(p + part.end * d, name(PointKind::kEdgeEnd));
-        }
+        add_corners(piece, of_b, sides_along_normal(cell), [&](const Vec4& p) {
+            return (cell.plane.normal.dot(p) - cell.plane.offset) / rise;
+        });
+    }
+
+    /// Corners of a piece that lie beside another, neither of them flat, and look the same way.
+    /// @param level   of the other body's core
+    void add_beside(const SurfacePiece& piece, bool of_b, const SurfacePiece& other,
+                    const FunctionRef<Level(const Vec4&)>& level) {
+        if (piece.is_flat || other.is_flat) return;
+        add_corners(piece, of_b, {other.sides, other.round_sides}, [&](const Vec4& p) {
+            const Level there = level(p);
+            const double rise = (of_b ? 1 : -1) * there.gradient.dot(normal_);
+            return rise >= kCellPart ? there.value : kMiss;
+        });
     }
 
     /// The nearest points; another that is as near stands for them.
@@ -122,13 +142,43 @@ class PieceContacts {
     }
 
   private:
+    /// @param height_of   a core's point over the other, along the normal; none: kMiss
+    template <class HeightOf>
+    void add_corners(const SurfacePiece& piece, bool of_b, const Sides& sides,
+                     HeightOf&& height_of) {
+        const auto add = [&](const Vec4& p, std::uint32_t name) {
+            const double height = height_of(p);
+            if (height < kMiss) add_point(p, height, of_b, name);
+        };
+        for (std::size_t i = 0; i < piece.vertices.size(); ++i)
+            if (is_within(piece.vertices[i], sides, border_))
+                add(piece.vertices[i], name_of(PointKind::kVertex, of_b, piece.names[i], 0));
+        for (const auto& edge : piece.edges) {
+            const std::size_t from = edge[0], to = edge[1];
+            const Vec4 &p = piece.vertices[from], d = piece.vertices[to] - p;
+            const Clipped part = clipped(p, d, sides, border_);
+            if (part.is_empty()) continue;
+            const auto name = [&](PointKind kind) {
+                return name_of(kind, of_b, piece.names[from], piece.names[to]);
+            };
+            if (part.begin > 0) add(p + part.begin * d, name(PointKind::kEdgeBegin));
+            if (part.end < 1) add(p + part.end * d, name(PointKind::kEdgeEnd));
+        }
+    }
+
     /// What holds the points that lie over a cell, seen along the contact's normal.
-    std::vector<HalfSpace> sides_along_normal(const SurfacePiece& cell) const {
-        std::vector<HalfSpace> sides = cell.sides;
-        for (HalfSpace& side : sides) {
-            const double lean = side.normal.dot(normal_) / cell.plane.normal.dot(normal_);
-            side.normal -= lean * cell.plane.normal;
-            side.offset -= lean * cell.plane.offset;
+    Sides sides_along_normal(const SurfacePiece& cell) const {
+        const HalfSpace& plane = cell.plane;
+        const double rise = plane.normal.dot(normal_);
+        Sides sides = {cell.sides, cell.round_sides};
+        for (HalfSpace& side : sides.flat) {
+            const double lean = side.normal.dot(normal_) / rise;
+            side.normal -= lean * plane.normal;
+            side.offset -= lean * plane.offset;
+        }
+        for (RoundSide& side : sides.round) {
+            side.centre += (plane.offset - plane.normal.dot(side.centre)) * plane.normal;
+            side.axes -= side.axes * normal_ * (plane.normal / rise).transpose();
         }
         return sides;
     }
@@ -181,6 +231,8 @@ void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess
     PieceContacts points(normal, a.radius, b.radius, size);
     points.add_over_cell(of_b, true, of_a);
     points.add_over_cell(of_a, false, of_b);
+    points.add_beside(of_b, true, of_a, a.level);
+    points.add_beside(of_a, false, of_b, b.level);
     points.add_nearest(nearest, distance - radii);
     points.put(distance - radii, origin, margin, out);
 }

@@ -7,16 +7,24 @@
 #include "core/contact/contact.hpp"
 #include "core/convex/convex_separation.hpp"
 #include "core/convex/hull.hpp"
+#include "core/shape/room.hpp"
 
 namespace tesserae {
 
-/// A piece of a body's surface: a flat cell, or one of less dimensions, as a polyhedron in the
-/// world.
+/// The points whose part in some plane or 3-space is within a ball there.
+struct RoundSide {
+    Mat4 axes;  ///< projects onto the plane or 3-space
+    Vec4 centre;
+    double radius;
+};
+
+/// A piece of a body's surface: a flat cell, or one of less dimensions, in the world.
 struct SurfacePiece {
     bool is_flat = false;  ///< a cell, in the hyperplane that bounds `plane`, within its sides
     HalfSpace plane{};
     std::vector<HalfSpace> sides;
-    std::vector<Vec4> vertices;
+    std::vector<RoundSide> round_sides;
+    std::vector<Vec4> vertices;                       ///< of a round piece some that span it
     std::vector<std::uint16_t> names;                 ///< of the vertices
     std::vector<std::array<std::uint16_t, 2>> edges;  ///< by the places of their ends
 };
@@ -28,10 +36,14 @@ struct ConvexBody {
     double radius;
     /// Puts the piece of the core's surface that looks most along a direction into an empty one.
     FunctionRef<void(const Vec4& direction, SurfacePiece& piece)> piece_along;
+    /// The core's signed distance, and the way out.
+    FunctionRef<Level(const Vec4& point)> level;
 };
 
 /// Contact points of any two convex bodies: their separation, and where a cell lies near the other
-/// body's piece that faces it the corners of both, each clipped to the other along the normal.
+/// body's piece that faces it the corners of both, each clipped to the other along the normal;
+/// where neither is flat, as two bodies side by side on their round sides, those that are near the
+/// other.
 /// @param guess    from a to b, not zero
 /// @param size     sum of the bounding radii [m]
 /// @param origin   of both bodies' coordinates, world

@@ -1,16 +1,17 @@
 #pragma once
 
 #include "core/contact/convex_contacts.hpp"
+#include "core/shape/ball_product.hpp"
+#include "core/shape/hull_shape.hpp"
 #include "core/shape/hyperbox.hpp"
 #include "core/shape/hypercapsule.hpp"
-#include "core/shape/polychoron.hpp"
 
 // Shapes as the general pair function sees them: a core in the body's frame, what it is widened by,
 // and the piece of its surface that looks along a direction.
 namespace tesserae {
 
-inline double core_radius(const Polychoron&) { return 0; }
-void piece_along(const Polychoron& shape, const Vec4& direction, SurfacePiece& piece);
+inline double core_radius(const HullShape&) { return 0; }
+void piece_along(const HullShape& shape, const Vec4& direction, SurfacePiece& piece);
 
 inline double core_radius(const Hyperbox&) { return 0; }
 void piece_along(const Hyperbox& shape, const Vec4& direction, SurfacePiece& piece);
@@ -18,13 +19,29 @@ void piece_along(const Hyperbox& shape, const Vec4& direction, SurfacePiece& pie
 inline double core_radius(const Hypercapsule& shape) { return shape.radius; }
 void piece_along(const Hypercapsule& shape, const Vec4& direction, SurfacePiece& piece);
 
+inline double core_radius(const BallProduct&) { return 0; }
+void piece_along(const BallProduct& shape, const Vec4& direction, SurfacePiece& piece);
+
+/// A point of a surface, named for the contacts that it makes.
+struct NamedPoint {
+    Vec4 point;
+    std::uint16_t name;
+};
+/// Points of the surface that span what looks along a direction: of every ball that is flat to it
+/// the ends of its axes, and the farthest point.
+std::vector<NamedPoint> points_along(const BallProduct& shape, const Vec4& direction);
+
 /// Farthest point of the core.
-inline Vec4 core_support(const Polychoron& s, const Vec4& direction) {
+inline Vec4 core_support(const HullShape& s, const Vec4& direction) {
     return support(s, direction);
 }
 inline Vec4 core_support(const Hyperbox& s, const Vec4& direction) { return support(s, direction); }
 inline Vec4 core_support(const Hypercapsule& s, const Vec4& direction) {
     return Vec4(0, direction[1] < 0 ? -0.5 * s.height : 0.5 * s.height, 0, 0);
+}
+
+inline Vec4 core_support(const BallProduct& s, const Vec4& direction) {
+    return support(s, direction);
 }
 
 /// Moves a piece from the body's frame.
@@ -52,9 +69,18 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
         piece_along(b, turn_b.transpose() * direction, piece);
         move_to(turn_b, between, piece);
     };
+    const auto level_a = [&](const Vec4& point) -> Level {
+        const Vec4 own = turn_a.transpose() * point;
+        return {signed_distance(a, own) + core_radius(a), turn_a * normal(a, own)};
+    };
+    const auto level_b = [&](const Vec4& point) -> Level {
+        const Vec4 own = turn_b.transpose() * (point - between);
+        return {signed_distance(b, own) + core_radius(b), turn_b * normal(b, own)};
+    };
     const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
-    convex_contacts({core_a, core_radius(a), piece_a}, {core_b, core_radius(b), piece_b}, guess,
-                    size, pose_a.position, margin, out);
+    convex_contacts({core_a, core_radius(a), piece_a, level_a},
+                    {core_b, core_radius(b), piece_b, level_b}, guess, size, pose_a.position,
+                    margin, out);
 }
 
 }  // namespace tesserae

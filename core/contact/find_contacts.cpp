@@ -1,5 +1,6 @@
 #include "core/contact/find_contacts.hpp"
 
+#include "core/contact/convex_pairs.hpp"
 #include "core/contact/hyperbox_hyperbox.hpp"
 #include "core/contact/hyperbox_hyperplane.hpp"
 #include "core/contact/hypercapsule_hyperbox.hpp"
@@ -9,7 +10,6 @@
 #include "core/contact/hypersphere_hypercapsule.hpp"
 #include "core/contact/hypersphere_hyperplane.hpp"
 #include "core/contact/hypersphere_hypersphere.hpp"
-#include "core/contact/polychoron_pairs.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/shape/hypersphere.hpp"
 #include "core/shape/room.hpp"
@@ -84,6 +85,21 @@ class ConvexRim {
     int steps_ = 0;
     bool halve_ = false;
 };
+
+/// Part of the lengths involved by which a ray must clearly meet a shape, or miss it, to decide.
+constexpr double kClearlyMet = 1e-9;
+
+/// Whether a ray meets a shape or not says enough of hard shadows, where that is clear.
+/// @param inside   which part of the ray is in the shape, enter > leave if it misses
+/// @param scale    the lengths involved
+inline std::optional<Rim> rim_by_interval(const RayInterval& inside, double scale,
+                                          const RimRange& range) {
+    const double first = std::max(0.0, inside.enter), last = std::min(range.limit, inside.leave);
+    const double clear = kClearlyMet * scale;
+    if (range.low >= 0 && last - first > clear) return Rim{-1};
+    if (range.high <= 0 && first - last > clear) return Rim{1};
+    return {};
+}
 
 template <class S>
 Rim convex_rim(const S& shape, const Vec4& origin, const Vec4& direction, const RimRange& range) {

@@ -9,8 +9,8 @@
 
 namespace tesserae {
 
-/// What a shape's parameter must be, beside finite.
-enum class Rule { kFinite, kNonNegative, kPositive, kNonZero };
+/// What a shape's parameter must be, beside finite. kSides: numbers of polygons' sides.
+enum class Rule { kFinite, kNonNegative, kPositive, kNonZero, kSides };
 
 /// What ray_hit returns for a ray that misses.
 constexpr double kMiss = std::numeric_limits<double>::infinity();
@@ -22,6 +22,11 @@ constexpr double kDistanceAccuracy = 1e-15;
 /// |origin| plus the shape's size; so does that of ray_exit. A ray that misses stays outside, or
 /// enters by no more than this.
 constexpr double kRayAccuracy = 2e-15;
+
+/// A part of a ray, by distances from its start; empty where enter > leave.
+struct RayInterval {
+    double enter, leave;
+};
 
 /// Which rims matter to the caller.
 struct RimRange {

@@ -2,11 +2,15 @@
 
 #include <variant>
 
+#include "core/shape/cubinder.hpp"
+#include "core/shape/duocylinder.hpp"
+#include "core/shape/duoprism.hpp"
 #include "core/shape/hyperbox.hpp"
 #include "core/shape/hypercapsule.hpp"
 #include "core/shape/hyperplane.hpp"
 #include "core/shape/hypersphere.hpp"
 #include "core/shape/polychoron.hpp"
+#include "core/shape/spherinder.hpp"
 
 namespace tesserae {
 
@@ -17,7 +21,8 @@ using Complete = S;
 /// The shape list: a new shape is its room, its pair files and one entry here. Code that works on
 /// any shape visits it.
 using Shape = std::variant<Complete<Hypersphere>, Complete<Hypercapsule>, Complete<Hyperbox>,
-                           Complete<Hyperplane>, Complete<Polychoron>>;
+                           Complete<Hyperplane>, Complete<Polychoron>, Complete<Duoprism>,
+                           Complete<Spherinder>, Complete<Cubinder>, Complete<Duocylinder>>;
 
 inline const char* name_of(const Shape& shape) {
     return std::visit([](const auto& s) { return s.kName; }, shape);

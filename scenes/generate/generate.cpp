@@ -183,18 +183,72 @@ std::string gas(std::uint64_t bodies) {
     return text + lattices(grid, half, 0.05, body("[-3, -1, 2, -2]"));
 }
 
+/// Where the bodies of a heap begin, between walls: half as high as wide, once it has fallen.
+struct HeapGrid {
+    Grid grid;
+    double width, height;
+
+    explicit HeapGrid(std::uint64_t bodies) {
+        constexpr double kSpacing = 1.1;
+        const std::uint64_t n = cube_side(static_cast<std::uint64_t>(
+            std::ceil(std::pow(2.0 * static_cast<double>(bodies), 0.75))));
+        width = kSpacing * static_cast<double>(n);
+        height = kSpacing * static_cast<double>(bodies / (n * n * n) + 1);
+        const double first = 0.5 * (kSpacing - width);
+        grid = {{0, 2, 3, 1}, {n, 0, n, n}, Vec4::Constant(kSpacing), {first, 0.7, first, first}};
+    }
+    std::string stage(std::string_view name) const {
+        return tesserae::scenes::stage(name, "duration = 4\n", height, width) +
+               floor_and_walls(0.5 * width + 0.1);
+    }
+    /// Of a body by its number, w first.
+    Vec4 place(std::uint64_t number) const {
+        const std::uint64_t n = grid.size[0];
+        const Vec4 steps(static_cast<double>(number / n / n % n),
+                         static_cast<double>(number / n / n / n),
+                         static_cast<double>(number / n % n), static_cast<double>(number % n));
+        return grid.corner + steps.cwiseProduct(grid.spacing);
+    }
+};
+
 std::string heap(std::string_view name, std::uint64_t bodies, const char* body) {
-    // Half as high as wide, once it has fallen.
-    constexpr double kSpacing = 1.1;
-    const std::uint64_t n = cube_side(
-        static_cast<std::uint64_t>(std::ceil(std::pow(2.0 * static_cast<double>(bodies), 0.75))));
-    const double width = kSpacing * static_cast<double>(n);
-    const auto layers = static_cast<double>(bodies / (n * n * n) + 1);
-    const double first = 0.5 * (kSpacing - width);
-    const Grid grid = {
-        {0, 2, 3, 1}, {n, 0, n, n}, Vec4::Constant(kSpacing), {first, 0.7, first, first}};
-    return stage(name, "duration = 4\n", kSpacing * layers, width) +
-           floor_and_walls(0.5 * width + 0.1) + lattices(grid, bodies, 0.045, body);
+    const HeapGrid heap(bodies);
+    return heap.stage(name) + lattices(heap.grid, bodies, 0.045, body);
+}
+
+constexpr const char* kConvex[] = {
+    "shape = \"polychoron\"\nregular = \"24-cell\"\nradius = 0.5\n",
+    "shape = \"duocylinder\"\nradii = [0.36, 0.34]\n",
+    "shape = \"polychoron\"\nregular = \"8-cell\"\nradius = 0.5\n",
+    "shape = \"spherinder\"\nradius = 0.36\nheight = 0.7\n",
+    "shape = \"polychoron\"\nregular = \"120-cell\"\nradius = 0.5\n",
+    "shape = \"duoprism\"\npolygons = [5, 6]\nradii = [0.38, 0.36]\n",
+    "shape = \"polychoron\"\nregular = \"16-cell\"\nradius = 0.5\n",
+    "shape = \"cubinder\"\nradius = 0.35\nsize = [0.6, 0.5]\n",
+    "shape = \"polychoron\"\nregular = \"600-cell\"\nradius = 0.5\n",
+    "shape = \"polychoron\"\nregular = \"5-cell\"\nradius = 0.5\n",
+};
+
+/// Every kind in turn, each body turned another way; of many bodies a row along w is alike.
+std::string polychora(std::uint64_t bodies) {
+    const HeapGrid heap(bodies);
+    constexpr std::uint64_t kMostSingle = 2000;
+    const std::uint64_t row = bodies <= kMostSingle ? 1 : heap.grid.size[3];
+    std::string text = heap.stage("polychora");
+    for (std::uint64_t first = 0, i = 0; first < bodies; first += row, ++i) {
+        const std::uint64_t count = std::min(row, bodies - first);
+        Vec4 centre = heap.place(first);
+        centre[3] += 0.5 * static_cast<double>(count - 1) * heap.grid.spacing[3];
+        // Multiples of irrational parts of a turn come near none before.
+        const auto turn = [&](double part) {
+            return std::round(360 * std::fmod(part * static_cast<double>(i), 1.0));
+        };
+        const std::string body = fmt::format(
+            "{}rotation = {{ xy = {}, xw = {}, yz = {} }}\n", kConvex[i % std::size(kConvex)],
+            turn(0.7548776662466927), turn(0.5698402909980532), turn(0.6180339887498949));
+        text += lattice({{1, 1, 1, count}, centre}, heap.grid.spacing, 0.045, body);
+    }
+    return text;
 }
 
 std::string stacks(std::uint64_t bodies) {
@@ -230,6 +284,7 @@ std::string generated_scene(std::string_view name, std::uint64_t bodies) {
     if (name == "gas") return head + gas(bodies);
     if (name == "pile") return head + heap(name, bodies, kBallText);
     if (name == "boxes") return head + heap(name, bodies, kUnevenBox);
+    if (name == "polychora") return head + polychora(bodies);
     if (name == "stacks") return head + stacks(bodies);
     TSR_ASSERT(name == "pyramid");
     return head + pyramid(bodies);

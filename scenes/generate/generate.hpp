@@ -7,13 +7,15 @@
 namespace tesserae::scenes {
 
 /// Scenes of many bodies, for measurements and to start from.
-inline constexpr std::string_view kGenerators[] = {"gas", "pile", "boxes", "stacks", "pyramid"};
+inline constexpr std::string_view kGenerators[] = {"gas",    "pile",    "boxes",
+                                                   "stacks", "pyramid", "polychora"};
 
 /// A scene file of exactly `bodies` bodies beside floor and walls.
 ///   gas      elastic spheres without gravity between eight walls, half of them against the other
 ///   pile     spheres that fall into one dense heap between walls
 ///   boxes    the same with boxes of unequal sides, turned
 ///   stacks   boxes in separate stacks of ten: as many islands
+///   polychora  regular polychora, a duoprism, a duocylinder, spherinders and cubinders in one heap
 ///   pyramid  boxes in rows, each one shorter than that below: one island
 /// @param name     one of kGenerators
 /// @param bodies   1 to 10^6

@@ -160,6 +160,10 @@ std::string toml_text(std::string_view value) {
 }
 
 std::string toml_text(const Vec4& value) { return list(value.data(), 4); }
+std::string toml_text(const Vec2& value) { return list(value.data(), 2); }
+std::string toml_text(const std::array<std::int64_t, 2>& values) {
+    return fmt::format("[{}, {}]", values[0], values[1]);
+}
 
 std::string toml_text(const std::vector<Vec4>& values) {
     std::string text = "[";

@@ -23,6 +23,8 @@ std::string toml_text(bool value);
 std::string toml_text(std::string_view value);  ///< quoted, escaped
 std::string toml_text(const char* value);
 std::string toml_text(const Vec4& value);
+std::string toml_text(const Vec2& value);
+std::string toml_text(const std::array<std::int64_t, 2>& values);
 std::string toml_text(const std::vector<Vec4>& values);
 std::string toml_text(RegularPolychoron which);
 std::string toml_text(const render::Color& value);

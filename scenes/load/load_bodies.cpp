@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
+#include <memory>
 #include <numbers>
 #include <unordered_map>
 #include <unordered_set>
@@ -31,6 +33,7 @@ const auto kShapeNames = []<std::size_t... I>(std::index_sequence<I...>) {
 const char* expected_of(Rule rule) {
     if (rule == Rule::kPositive) return "expected a size > 0";
     if (rule == Rule::kNonNegative) return "expected a size >= 0";
+    if (rule == Rule::kSides) return "expected the sides of two polygons, >= 3";
     return "expected a direction, four numbers";
 }
 
@@ -202,22 +205,37 @@ class BodyLoader {
     }
 
   private:
-    /// Equal polychora share what was made of them.
+    /// Equal hulls share what was made of them.
     Shape completed(TableReader& reader, Shape shape) {
-        auto* polychoron = std::get_if<Polychoron>(&shape);
-        if (polychoron == nullptr) {
-            std::visit([](auto& s) { complete(s); }, shape);
-            return shape;
-        }
         EffectiveWriter parameters;
         visit_parameters(shape, WriteKeys{parameters});
-        const auto [found, is_new] = polychora_.emplace(parameters.text(), *polychoron);
-        if (is_new) try {
-                complete(found->second);
-            } catch (const InputError& error) {
-                reader.fail(reader.has("vertices") ? "vertices" : "regular", error.what());
-            }
-        return found->second;
+        return std::visit(
+            [&]<class S>(S& own) -> Shape {
+                if constexpr (!std::derived_from<S, HullShape>) {
+                    complete(own);
+                } else if (const auto& [made, is_new] = hulls_.emplace(
+                               own.kName + parameters.text(), std::shared_ptr<const HullBody>());
+                           is_new) {
+                    complete_hull(reader, own);
+                    made->second = own.body;
+                } else {
+                    own.body = made->second;
+                }
+                return own;
+            },
+            shape);
+    }
+    template <class S>
+    void complete_hull(TableReader& reader, S& shape) {
+        try {
+            complete(shape);
+        } catch (const InputError& error) {
+            const char* culprit = nullptr;
+            shape.parameters(shape, [&](const char* key, auto&, Rule) {
+                if (culprit == nullptr) culprit = key;
+            });
+            reader.fail(culprit, error.what());
+        }
     }
     void check_name(TableReader& reader, bool named, std::size_t number, std::string& name) {
         if (!named) name = fmt::format("body-{}", number);
@@ -253,7 +271,8 @@ class BodyLoader {
     Scene& scene_;
     EffectiveWriter& out_;
     std::uint64_t total_ = 0;
-    std::unordered_map<std::string, Polychoron> polychora_;  ///< by their parameters
+    /// By shape and parameters.
+    std::unordered_map<std::string, std::shared_ptr<const HullBody>> hulls_;
     std::unordered_set<std::string> names_;
     std::unordered_map<std::array<std::uint64_t, 2>, std::uint32_t, FirstWord> types_;
 };

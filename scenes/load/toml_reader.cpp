@@ -246,6 +246,15 @@ bool TableReader::read(std::string_view key, Vec4& value, Rule rule) {
     return true;
 }
 
+bool TableReader::read(std::string_view key, Vec2& value, Rule rule) {
+    return read_reals(key, value.data(), 2, interval_of(rule));
+}
+
+bool TableReader::read(std::string_view key, std::array<std::int64_t, 2>& values, Rule rule) {
+    TSR_ASSERT(rule == Rule::kSides);
+    return read(key, std::span<std::int64_t>(values), IntegerRange{3, 1'000'000});
+}
+
 bool TableReader::read(std::string_view key, std::vector<Vec4>& values) {
     const toml::node* node = find(key);
     if (node == nullptr) return false;

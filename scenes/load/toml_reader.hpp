@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -73,6 +74,7 @@ class TableReader {
 
     bool read(std::string_view key, double& value, Interval interval);
     bool read(std::string_view key, Vec4& value, Rule rule);
+    bool read(std::string_view key, Vec2& value, Rule rule);
     bool read(std::string_view key, double& value, Rule rule);
     /// An array of points.
     bool read(std::string_view key, std::vector<Vec4>& values);
@@ -87,6 +89,8 @@ class TableReader {
         value = static_cast<std::remove_reference_t<decltype(value)>>(wide);
         return is_given;
     }
+    /// The sides of polygons.
+    bool read(std::string_view key, std::array<std::int64_t, 2>& values, Rule rule);
     /// An array of exactly so many integers.
     bool read(std::string_view key, std::span<std::int64_t> values, IntegerRange range);
     bool read(std::string_view key, std::vector<std::string>& values,

@@ -1,6 +1,9 @@
 #include "scenes/plan/plan.hpp"
 
 #include <algorithm>
+#include <concepts>
+#include <unordered_set>
+#include <vector>
 
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/state/needs.hpp"
@@ -110,6 +113,20 @@ void decide_physics(const Scene& scene, Plan& plan) {
         decide_solver(*scene.physics, needs, fit_floats(types), plan);
 }
 
+/// What hulls take, of which equal shapes share one.
+std::uint64_t hull_bytes(const std::vector<BodyType>& types) {
+    std::unordered_set<const HullBody*> counted;
+    std::uint64_t bytes = 0;
+    for (const BodyType& type : types)
+        std::visit(
+            [&]<class S>(const S& shape) {
+                if constexpr (std::derived_from<S, HullShape>)
+                    if (counted.insert(shape.body.get()).second) bytes += shared_bytes(shape);
+            },
+            type.shape);
+    return bytes;
+}
+
 std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
     const std::uint64_t spheres = count_if_type(scene.bodies, [&](std::uint32_t number) {
         const BodyType& type = scene.bodies.types[number];
@@ -121,9 +138,7 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
                           spheres * kSphereStepBytes +
                           (plan.movable_bodies - spheres) * kStepBytes +
                           kTilesOfThread * threads * tile * kPixelBytes;
-    for (const BodyType& type : scene.bodies.types)
-        if (const auto* polychoron = std::get_if<Polychoron>(&type.shape))
-            bytes += shared_bytes(*polychoron);
+    bytes += hull_bytes(scene.bodies.types);
     const render::Channels& channels = scene.render.channels;
     if (channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
     if (channels.cryptomatte)

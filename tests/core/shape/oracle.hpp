@@ -4,7 +4,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <tuple>
@@ -101,11 +104,23 @@ inline LVec nearest_of_hull(const std::vector<LVec>& points) {
 
 /// FORMULAS 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho. Its
 /// distance is found by descent on the t_k one at a time, not by the rooms' clamping. A polychoron
-/// is the hull of its points.
+/// is the hull of its points. A product of balls is what is in a ball along some axes and in
+/// another along the others.
 struct Oracle {
+    struct Ball {
+        std::vector<int> axes;
+        long double radius;
+
+        long double part_of(const LVec& p) const {
+            long double squares = 0;
+            for (const int axis : axes) squares += p[axis] * p[axis];
+            return std::sqrt(squares);
+        }
+    };
     std::vector<LVec> generators;
     std::vector<LVec> points;                          ///< of a hull
     std::vector<std::pair<LVec, long double>> planes;  ///< of its cells
+    std::vector<Ball> balls;                           ///< of a product
     long double rho = 0;
     double size;  ///< what the accuracies in room.hpp are relative to
 
@@ -116,7 +131,15 @@ struct Oracle {
         for (int i = 0; i < 4; ++i) generators.push_back(LVec::Unit(i) * (s.size[i] / 2.0L));
     }
 
-    explicit Oracle(const Polychoron& s) : size(bounding_radius(s)) {
+    explicit Oracle(const Spherinder& s)
+        : balls{{{0, 2, 3}, s.radius}, {{1}, s.height / 2.0L}}, size(bounding_radius(s)) {}
+    explicit Oracle(const Cubinder& s)
+        : balls{{{0, 1}, s.radius}, {{2}, s.size[0] / 2.0L}, {{3}, s.size[1] / 2.0L}},
+          size(bounding_radius(s)) {}
+    explicit Oracle(const Duocylinder& s)
+        : balls{{{0, 1}, s.radii[0]}, {{2, 3}, s.radii[1]}}, size(bounding_radius(s)) {}
+
+    explicit Oracle(const HullShape& s) : size(bounding_radius(s)) {
         const Hull& hull = s.body->hull;
         for (const Vec4& vertex : hull.vertices) points.push_back(vertex.cast<long double>());
         for (const HullCell& cell : hull.cells) {
@@ -150,10 +173,19 @@ struct Oracle {
         }
         long double sum = rho * d.norm();
         for (const LVec& g : generators) sum += std::abs(g.dot(d));
+        for (const Ball& ball : balls) sum += ball.radius * ball.part_of(d);
         return sum;
     }
     /// Distance of a point outside; 0 inside.
     long double outside(LVec p) const {
+        if (!balls.empty()) {
+            LVec nearest = p;
+            for (const Ball& ball : balls)
+                if (const long double part = ball.part_of(p); part > ball.radius)
+                    for (const int axis : ball.axes) nearest[axis] *= ball.radius / part;
+            const long double distance = (p - nearest).norm();
+            return distance > 1e-18L * (size + p.norm()) ? distance : 0;
+        }
         if (!points.empty()) {
             const long double deepest = deepest_plane(p);
             if (deepest <= 0) return 0;
@@ -183,6 +215,13 @@ struct Oracle {
     long double signed_distance(const LVec& p) const {
         if (const long double distance = outside(p); distance > 0) return distance;
         if (!points.empty()) return deepest_plane(p);
+        if (!balls.empty()) {
+            // Along a ball's part the surface is as far as its radius leaves; nowhere is it nearer.
+            long double deepest = -size;
+            for (const Ball& ball : balls)
+                deepest = std::max(deepest, ball.part_of(p) - ball.radius);
+            return deepest;
+        }
         if (rho == 0) {
             long double deepest = -support(LVec::UnitX());
             for (const LVec& g : generators)
@@ -248,6 +287,46 @@ inline Polychoron random_shape(RandomGeometry& random) {
     return hull_shape(points);
 }
 
+template <>
+inline Duoprism random_shape(RandomGeometry& random) {
+    Duoprism shape;
+    for (auto& sides : shape.polygons) sides = static_cast<std::int64_t>(random.uniform(3, 6));
+    for (double& radius : shape.radii) radius = random.log_uniform(0.1, 10);
+    complete(shape);
+    return shape;
+}
+inline Spherinder spherinder(double radius, double height) {
+    Spherinder shape;
+    shape.radius = radius, shape.height = height;
+    complete(shape);
+    return shape;
+}
+inline Cubinder cubinder(double radius, const Vec2& size) {
+    Cubinder shape;
+    shape.radius = radius, shape.size = size;
+    complete(shape);
+    return shape;
+}
+inline Duocylinder duocylinder(const Vec2& radii) {
+    Duocylinder shape;
+    shape.radii = radii;
+    complete(shape);
+    return shape;
+}
+template <>
+inline Spherinder random_shape(RandomGeometry& random) {
+    return spherinder(random.log_uniform(0.1, 10), random.log_uniform(0.1, 10));
+}
+template <>
+inline Cubinder random_shape(RandomGeometry& random) {
+    return cubinder(random.log_uniform(0.1, 10),
+                    {random.log_uniform(0.1, 10), random.log_uniform(0.1, 10)});
+}
+template <>
+inline Duocylinder random_shape(RandomGeometry& random) {
+    return duocylinder({random.log_uniform(0.1, 10), random.log_uniform(0.1, 10)});
+}
+
 /// Tiny, huge, stretched 1e4 to 1, without a core.
 template <class S>
 std::vector<S> odd_shapes();
@@ -289,9 +368,43 @@ inline std::vector<Polychoron> odd_shapes() {
             regular_shape(k8Cell, 1e-150),    regular_shape(k24Cell, 1e150)};
 }
 
+template <>
+inline std::vector<Duoprism> odd_shapes() {
+    const auto duoprism = [](std::int64_t p, std::int64_t q, const Vec2& radii) {
+        Duoprism shape;
+        shape.polygons = {p, q}, shape.radii = radii;
+        complete(shape);
+        return shape;
+    };
+    return {duoprism(3, 3, {1, 1}),     duoprism(4, 4, {1, 1}),
+            duoprism(3, 9, {1, 1e-3}),  duoprism(3, 5, {1e-6, 1e-6}),
+            duoprism(3, 6, {1e6, 1e6}), duoprism(3, 4, {1e150, 1e150})};
+}
+template <>
+inline std::vector<Spherinder> odd_shapes() {
+    return {spherinder(1, 1),       spherinder(1, 1e4),         spherinder(1e4, 1),
+            spherinder(1e-6, 1e-6), spherinder(1e-150, 1e-150), spherinder(1e150, 1e150)};
+}
+template <>
+inline std::vector<Cubinder> odd_shapes() {
+    return {cubinder(1, {1, 1}),
+            cubinder(1, {1e4, 1}),
+            cubinder(1, {1e-4, 1e-4}),
+            cubinder(1e-6, {1e-6, 1e-6}),
+            cubinder(1e-150, {1e-150, 1e-150}),
+            cubinder(1e150, {1e150, 1e150})};
+}
+template <>
+inline std::vector<Duocylinder> odd_shapes() {
+    return {duocylinder({1, 1}),       duocylinder({1, 1e4}),         duocylinder({1, 1e-4}),
+            duocylinder({1e-6, 1e-6}), duocylinder({1e-150, 1e-150}), duocylinder({1e150, 1e150})};
+}
+
 /// How much of a suite a shape gets whose oracle takes long.
 template <class S>
-constexpr double kShare = std::is_same_v<S, Polychoron> ? 0.2 : 1;
+constexpr double kShare = std::is_same_v<S, Duoprism>       ? 0.05
+                          : std::derived_from<S, HullShape> ? 0.2
+                                                            : 1;
 
 /// All odd shapes, then random ones, that share of `count` in all.
 template <class S>
@@ -308,7 +421,9 @@ inline void scale_parameter(Vec4& value, double factor) { value *= factor; }
 inline void scale_parameter(std::vector<Vec4>& values, double factor) {
     for (Vec4& value : values) value *= factor;
 }
+inline void scale_parameter(Vec2& value, double factor) { value *= factor; }
 inline void scale_parameter(RegularPolychoron&, double) {}
+inline void scale_parameter(std::array<std::int64_t, 2>&, double) {}
 
 /// A point in or around the shape: half of them in a box 1.5 times its bounds, the others pulled to
 /// the surface or onto the axes, where distances have their edges.

@@ -33,7 +33,7 @@ void for_rays(std::uint64_t seed, const Check& check) {
     RandomGeometry random(seed);
     for (const S& shape : sample_shapes<S>(random, 50)) {
         const Oracle oracle(shape);
-        for (int i = 0; i < (std::is_same_v<S, Polychoron> ? 24 : 60); ++i) {
+        for (int i = 0; i < (std::derived_from<S, HullShape> ? 24 : 60); ++i) {
             const double far = i % 5 == 0 ? 1e4 : i % 5 == 1 ? 0.0 : random.log_uniform(0.5, 100);
             const Vec4 target = sample_point(shape, random);
             Vec4 d = random.direction();
@@ -170,7 +170,7 @@ TYPED_TEST(ShapeRay, StartsOnTheSurfaceAndLeavesOrEnters) {
             // one of them.
             const bool is_outward = signed_distance(shape, p + 1e-3 * size * d) > 1e-6 * size;
             if (n.dot(d) > 0 && signed_distance(shape, p) > 0 &&
-                (is_outward || !std::is_same_v<TypeParam, Polychoron>)) {
+                (is_outward || !std::derived_from<TypeParam, HullShape>)) {
                 EXPECT_EQ(t, kMiss) << p.transpose();
             }
             // Inward: at once. The distance is convex: from rounding at p to less than -1e-6 size
@@ -198,7 +198,7 @@ TYPED_TEST(ShapeRay, GrazesWithinRounding) {
             const auto start = [&](double s) -> Vec4 { return surface + s * n - far * d; };
             EXPECT_EQ(ray_hit(shape, start(2 * off), d), kMiss);
             // A ray that is that much under a sharp corner may be nearer to the faces beside it.
-            if (!std::is_same_v<TypeParam, Polychoron> ||
+            if (!std::derived_from<TypeParam, HullShape> ||
                 signed_distance(shape, surface - 2 * off * n) < -2 * kRayAccuracy * (far + size)) {
                 EXPECT_LT(ray_hit(shape, start(-2 * off), d), kMiss);
             }

@@ -59,7 +59,7 @@ void for_rays(std::uint64_t seed, std::size_t shapes, const Check& check) {
     RandomGeometry random(seed);
     for (const S& shape : sample_shapes<S>(random, shapes)) {
         const Oracle oracle(shape);
-        for (int i = 0; i < (std::is_same_v<S, Polychoron> ? 24 : 60); ++i) {
+        for (int i = 0; i < (std::derived_from<S, HullShape> ? 24 : 60); ++i) {
             Vec4 o = sample_point(shape, random);
             if (i % 3 == 0) o *= random.log_uniform(1, 1e4);
             if (i % 5 == 0) {

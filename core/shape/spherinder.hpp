@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/shape/ball_product.hpp"
+
+namespace tesserae {
+
+/// A ball of three dimensions, in x, z and w, times a segment along y.
+struct Spherinder : BallProduct {
+    static constexpr const char* kName = "spherinder";
+    static constexpr bool kBounded = true;
+
+    double radius = 1;  ///< [m], > 0
+    double height = 1;  ///< of the segment [m], > 0
+
+    friend bool operator==(const Spherinder& a, const Spherinder& b) {
+        return a.radius == b.radius && a.height == b.height;
+    }
+    template <class Self, class Visit>
+    static void parameters(Self& self, Visit&& visit) {
+        visit("radius", self.radius, Rule::kPositive);
+        visit("height", self.height, Rule::kPositive);
+    }
+};
+
+inline void complete(Spherinder& shape) {
+    shape.clear();
+    shape.add({1, 0, 1, 1}, shape.radius);
+    shape.add({0, 1, 0, 0}, 0.5 * shape.height);
+}
+
+}  // namespace tesserae
