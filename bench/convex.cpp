@@ -248,8 +248,8 @@ std::vector<double> true_distances(const std::vector<ConvexPair>& ours,
     return all;
 }
 
-/// How far distances are off, in parts of the size: the worst, and how many by over
-/// kOff.
+/// How far distances are off, in parts of the size: the worst, and how many by more
+/// than kOff.
 template <class Pair, class Distance>
 void add_errors(Table& table, const std::string& name, const List<Pair>& list,
                 const std::vector<double>& truth, const Distance& distance) {
