@@ -33,6 +33,12 @@ inline void randomize(Random& random, Hypercapsule& s) {
 inline void randomize(Random& random, Hyperbox& s) {
     for (double& side : s.size) side = random_size(random);
 }
+/// A 24-cell; not one of the pairs of contacts.cpp: see convex.cpp.
+inline void randomize(Random& random, Polychoron& s) {
+    s.regular = RegularPolychoron::k24Cell;
+    s.radius = 0.5 * random_size(random);
+    complete(s);
+}
 inline void randomize(Random& random, Hyperplane& s) {
     s.normal = random_normals(random).normalized();
 }

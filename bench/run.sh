@@ -4,6 +4,7 @@
 #   bash bench/run.sh              all parts
 #   bash bench/run.sh accuracy     error against run time
 #   bash bench/run.sh speed        the inner loops
+#   bash bench/run.sh convex       pairs and towers of polychora, beside Bullet's and libccd's, a minute
 #   bash bench/run.sh leave-out    what leaving out parts saves, two minutes
 #   bash bench/run.sh rays         view, shadow and bounce rays
 #   bash bench/run.sh extremes     stiff and extreme scenes
@@ -17,7 +18,7 @@
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-all=(accuracy speed leave-out rays extremes light picture bullet peers scaling)
+all=(accuracy speed convex leave-out rays extremes light picture bullet peers scaling)
 on_demand=(cycles large scaling-million)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
@@ -27,7 +28,7 @@ if [ $# != 0 ]; then
         ;;
     esac
 fi
-install_packages "${packages[@]}" libbenchmark-dev libbullet-dev libode-dev python3-matplotlib python3-numpy python3-pil
+install_packages "${packages[@]}" libbenchmark-dev libbullet-dev libccd-dev libode-dev python3-matplotlib python3-numpy python3-pil
 
 folder=$root/build/bench
 results=$root/bench/results
@@ -67,6 +68,12 @@ speed() {
     head_of speed "$1"
     /usr/bin/python3 -B "$root/bench/report.py" "$raw/head.txt" "$raw/hot_loops.json" \
         "$raw"/contacts_{double,float}.json "$results"
+}
+
+convex() {
+    "$folder/bench/convex" >"$raw/convex.csv"
+    head_of convex "$1"
+    cat "$raw/head.txt" "$raw/convex.csv" >"$results/convex.csv"
 }
 
 leave-out() {
