@@ -42,6 +42,15 @@ inline void randomize(Random& random, Polychoron& s) {
 inline void randomize(Random& random, Hyperplane& s) {
     s.normal = random_normals(random).normalized();
 }
+/// Every other shape: each size anew.
+template <class S>
+void randomize(Random& random, S& shape) {
+    S::parameters(shape, [&](const char*, auto& value, Rule rule) {
+        if constexpr (requires { value *= 1.0; })
+            if (rule == Rule::kPositive) value *= 0.5 * random_size(random);
+    });
+    complete(shape);
+}
 
 /// How deep a resting body lies in the other [m].
 constexpr double kRestingDepth = 1e-3;

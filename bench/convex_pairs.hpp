@@ -54,6 +54,10 @@ struct PlacedCore {
         piece_along(shape, turn.transpose() * direction, piece);
         move_to(turn, offset, piece);
     }
+    Level level(const Vec4& point) const {
+        const Vec4 own = turn.transpose() * (point - offset);
+        return {signed_distance(shape, own), turn * normal(shape, own)};
+    }
 };
 
 /// The distance alone, from poses.
@@ -85,8 +89,10 @@ void contacts_from(const ConvexPair& pair, const Vec4& guess, std::vector<Contac
     const PlacedCore<S> core_a(a, pair.a, pair.a.position), core_b(b, pair.b, pair.a.position);
     const auto piece_a = [&](const Vec4& n, SurfacePiece& piece) { core_a.put_piece(n, piece); };
     const auto piece_b = [&](const Vec4& n, SurfacePiece& piece) { core_b.put_piece(n, piece); };
+    const auto level_a = [&](const Vec4& p) { return core_a.level(p); };
+    const auto level_b = [&](const Vec4& p) { return core_b.level(p); };
     PairContacts out{0, 1, false, list};
-    convex_contacts({core_a, 0, piece_a}, {core_b, 0, piece_b}, guess,
+    convex_contacts({core_a, 0, piece_a, level_a}, {core_b, 0, piece_b, level_b}, guess,
                     bounding_radius(a) + bounding_radius(b), pair.a.position, 0, out);
 }
 

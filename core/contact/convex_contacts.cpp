@@ -80,22 +80,42 @@ Clipped clipped(const Vec4& p, const Vec4& d, const Sides& sides, double border)
     return part;
 }
 
+/// A thread's own, from pair to pair: a pair's few points should not have to ask for memory.
+struct Scratch {
+    SurfacePiece a, b;
+    Sides sides;
+    std::vector<ContactPoint> points;
+
+    void clear() {
+        for (SurfacePiece* piece : {&a, &b}) {
+            piece->sides.clear(), piece->round_sides.clear(), piece->vertices.clear();
+            piece->names.clear(), piece->edges.clear();
+            piece->is_flat = false;
+        }
+        points.clear();
+    }
+};
+
 /// Gathers a pair's points along one normal.
 class PieceContacts {
   public:
-    PieceContacts(const Vec4& normal, double radius_a, double radius_b, double size)
+    PieceContacts(const Vec4& normal, double radius_a, double radius_b, double size,
+                  Scratch& scratch)
         : normal_(normal),
           radius_a_(radius_a),
           radius_b_(radius_b),
           size_(size),
-          border_(kBorder * size) {}
+          border_(kBorder * size),
+          points_(scratch.points),
+          sides_(scratch.sides) {}
 
     /// Corners of a piece that lie over a cell.
     /// @param of_b   the piece is b's and the cell a's, or the other way round
     void add_over_cell(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell) {
         const double rise = (of_b ? 1 : -1) * cell.plane.normal.dot(normal_);
         if (!cell.is_flat || !(rise >= kCellPart)) return;
-        add_corners(piece, of_b, sides_along_normal(cell), [&](const Vec4& p) {
+        find_sides_along_normal(cell);
+        add_corners(piece, of_b, [&](const Vec4& p) {
             return (cell.plane.normal.dot(p) - cell.plane.offset) / rise;
         });
     }
@@ -105,7 +125,8 @@ class PieceContacts {
     void add_beside(const SurfacePiece& piece, bool of_b, const SurfacePiece& other,
                     const FunctionRef<Level(const Vec4&)>& level) {
         if (piece.is_flat || other.is_flat) return;
-        add_corners(piece, of_b, {other.sides, other.round_sides}, [&](const Vec4& p) {
+        sides_.flat = other.sides, sides_.round = other.round_sides;
+        add_corners(piece, of_b, [&](const Vec4& p) {
             const Level there = level(p);
             const double rise = (of_b ? 1 : -1) * there.gradient.dot(normal_);
             return rise >= kCellPart ? there.value : kMiss;
@@ -142,21 +163,21 @@ class PieceContacts {
     }
 
   private:
+    /// Corners of a piece within sides_.
     /// @param height_of   a core's point over the other, along the normal; none: kMiss
     template <class HeightOf>
-    void add_corners(const SurfacePiece& piece, bool of_b, const Sides& sides,
-                     HeightOf&& height_of) {
+    void add_corners(const SurfacePiece& piece, bool of_b, HeightOf&& height_of) {
         const auto add = [&](const Vec4& p, std::uint32_t name) {
             const double height = height_of(p);
             if (height < kMiss) add_point(p, height, of_b, name);
         };
         for (std::size_t i = 0; i < piece.vertices.size(); ++i)
-            if (is_within(piece.vertices[i], sides, border_))
+            if (is_within(piece.vertices[i], sides_, border_))
                 add(piece.vertices[i], name_of(PointKind::kVertex, of_b, piece.names[i], 0));
         for (const auto& edge : piece.edges) {
             const std::size_t from = edge[0], to = edge[1];
             const Vec4 &p = piece.vertices[from], d = piece.vertices[to] - p;
-            const Clipped part = clipped(p, d, sides, border_);
+            const Clipped part = clipped(p, d, sides_, border_);
             if (part.is_empty()) continue;
             const auto name = [&](PointKind kind) {
                 return name_of(kind, of_b, piece.names[from], piece.names[to]);
@@ -167,20 +188,19 @@ class PieceContacts {
     }
 
     /// What holds the points that lie over a cell, seen along the contact's normal.
-    Sides sides_along_normal(const SurfacePiece& cell) const {
+    void find_sides_along_normal(const SurfacePiece& cell) {
         const HalfSpace& plane = cell.plane;
         const double rise = plane.normal.dot(normal_);
-        Sides sides = {cell.sides, cell.round_sides};
-        for (HalfSpace& side : sides.flat) {
+        sides_.flat = cell.sides, sides_.round = cell.round_sides;
+        for (HalfSpace& side : sides_.flat) {
             const double lean = side.normal.dot(normal_) / rise;
             side.normal -= lean * plane.normal;
             side.offset -= lean * plane.offset;
         }
-        for (RoundSide& side : sides.round) {
+        for (RoundSide& side : sides_.round) {
             side.centre += (plane.offset - plane.normal.dot(side.centre)) * plane.normal;
             side.axes -= side.axes * normal_ * (plane.normal / rise).transpose();
         }
-        return sides;
     }
     /// @param height   of a core's point over the other's plane, along the normal
     void add_point(const Vec4& p, double height, bool of_b, std::uint32_t name) {
@@ -197,7 +217,8 @@ class PieceContacts {
 
     const Vec4& normal_;
     double radius_a_, radius_b_, size_, border_;
-    std::vector<ContactPoint> points_;
+    std::vector<ContactPoint>& points_;
+    Sides& sides_;
 };
 
 /// How far apart two cores are along a direction.
@@ -210,11 +231,13 @@ double gap_along(const ConvexBody& a, const ConvexBody& b, const Vec4& direction
 void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess, double size,
                      const Vec4& origin, double margin, PairContacts& out) {
     const double radii = a.radius + b.radius;
-    const ConvexSeparation nearest = separation_of(a.core, b.core, guess, size);
+    const ConvexSeparation nearest = separation_of(a.core, b.core, guess, size, margin + radii);
     if (!(nearest.distance - radii <= margin)) return;
     Vec4 normal = nearest.normal;
     double distance = nearest.distance;
-    SurfacePiece of_a, of_b;
+    thread_local Scratch scratch;
+    scratch.clear();
+    SurfacePiece &of_a = scratch.a, &of_b = scratch.b;
     a.piece_along(normal, of_a);
     b.piece_along(-normal, of_b);
     // A cell's own normal, where it serves as well.
@@ -228,7 +251,7 @@ void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess
     };
     if (!try_normal(of_a, 1)) try_normal(of_b, -1);
 
-    PieceContacts points(normal, a.radius, b.radius, size);
+    PieceContacts points(normal, a.radius, b.radius, size, scratch);
     points.add_over_cell(of_b, true, of_a);
     points.add_over_cell(of_a, false, of_b);
     points.add_beside(of_b, true, of_a, a.level);

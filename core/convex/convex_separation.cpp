@@ -37,7 +37,9 @@ struct KnownGap {
 
 /// The simplex goes to the point of the difference nearest to its target. Returns the direction
 /// from there to the target with the greatest gap between the two; none if they coincide.
-KnownGap approach_target(const MinkowskiDifference& difference, Simplex& simplex) {
+/// @param enough   a gap above this ends it [units]
+KnownGap approach_target(const MinkowskiDifference& difference, Simplex& simplex,
+                         double enough = std::numeric_limits<double>::infinity()) {
     const double rounding = difference.rounding();
     KnownGap best;
     double least = std::numeric_limits<double>::infinity();
@@ -52,7 +54,7 @@ KnownGap approach_target(const MinkowskiDifference& difference, Simplex& simplex
         if (gap > best.gap || distance < least - rounding) idle = 0;
         if (gap > best.gap) best = {normal, gap};
         least = std::min(least, distance);
-        if (distance - gap <= kEqual * rounding) break;
+        if (distance - gap <= kEqual * rounding || gap > enough) break;
         if (!simplex.add(p, best.gap - kMeets * rounding) && !simplex.refine()) break;
         if (idle == kMaxIdle / 2) simplex.refine();
     }
@@ -230,7 +232,8 @@ KnownGap deepest_overlap(const MinkowskiDifference& difference, Simplex& simplex
 
 }  // namespace
 
-ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size) {
+ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
+                               double enough) {
     MinkowskiDifference difference(a, b, size);
     const bool is_direction = guess.allFinite() && !guess.isZero(0);
     const DifferencePoint first =
@@ -238,7 +241,7 @@ ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& g
     difference.note_coordinates(first);
     Simplex simplex;
     simplex.start(Vec4::Zero(), first);
-    KnownGap best = approach_target(difference, simplex);
+    KnownGap best = approach_target(difference, simplex, enough / difference.unit());
     const double distance = simplex.contains_target() ? 0 : simplex.nearest().norm();
     if (best.normal.isZero(0) || simplex.contains_target() ||
         (distance < kNearlyTouching && distance - best.gap > 2 * kEqual * difference.rounding()))

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "core/algebra/vector.hpp"
 #include "core/function_ref.hpp"
 
@@ -35,13 +37,16 @@ constexpr double kRoundOverlapAccuracy = 1e-3;
 /// @param guess  nonzero direction from a to b, any (for example between the centres)
 /// @param size   a length of the order of both bodies (sum of bounding radii) [m]: tolerances are
 ///               relative to it
+/// @param enough bodies that are farther apart than this [m] may be said to be apart by any gap
+///               above it: most are told so in two or three steps
 ///
 /// Bodies of which one is sunk to the other's middle have several least overlaps; which one is
 /// returned depends on rounding. No finite input gives a NaN.
 ///
 /// Sources: Gilbert, Johnson, Keerthi 1988 for what is apart, with the nearest point of a simplex
 /// after Wolfe 1976 (see Simplex); van den Bergen 2001 for the overlap (see ExpandingPolytope).
-ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size);
+ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
+                               double enough = std::numeric_limits<double>::infinity());
 
 /// The separation of the bodies that are all within a radius of two convex cores, of which it is
 /// known. The support functions of balls are the same in all directions, so it has the same normal:

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 namespace tesserae::render {
@@ -55,21 +56,29 @@ class BallCap {
     bool is_outside_ = false;
 };
 
-std::optional<Toward> toward_ball(const Vec4& origin, double radius, const Uniform3& u) {
-    const BallCap cap(-origin, radius);
-    if (!cap.is_outside()) return {};
-    return Toward{cap.direction(u), cap.density()};
+/// The directions that look past the nearest point of a shape: half of all, and all that meet it.
+template <class S>
+std::optional<Cap> half_toward(const S& shape, const Vec4& origin) {
+    if (!S::kBounded || !(signed_distance(shape, origin) > 0)) return {};
+    return Cap(0.5 * pi);
 }
 
-// Any shape: its bounding ball.
+// Any shape: its bounding ball, and inside that half of all directions.
 template <class S>
 std::optional<Toward> sample(const S& shape, const Vec4& origin, const Uniform3& u) {
-    return toward_ball(origin, bounding_radius(shape), u);
+    const BallCap ball(-origin, bounding_radius(shape));
+    if (ball.is_outside()) return Toward{ball.direction(u), ball.density()};
+    const auto half = half_toward(shape, origin);
+    if (!half) return {};
+    const TangentFrame frame(-normal(shape, origin));
+    return Toward{frame.to_world(half->direction(u)), 1 / half->solid_angle()};
 }
 template <class S>
 double density(const S& shape, const Vec4& origin, const Vec4&) {
-    const BallCap cap(-origin, bounding_radius(shape));
-    return cap.is_outside() ? cap.density() : 0;
+    const BallCap ball(-origin, bounding_radius(shape));
+    if (ball.is_outside()) return ball.density();
+    const auto half = half_toward(shape, origin);
+    return half ? 1 / half->solid_angle() : 0;
 }
 
 /// A number of [0, 1] with a density that goes evenly from a to b (of any scale), and that density.

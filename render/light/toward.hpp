@@ -15,7 +15,8 @@ struct Toward {
 };
 
 /// A direction toward a bounded shape; none from inside it. Of a ball evenly in solid angle, of a
-/// box and a capsule nearly so; of every other shape evenly over the cap of its bounding ball.
+/// box and a capsule nearly so; of every other shape evenly over the cap of its bounding ball,
+/// inside that evenly over half of all directions.
 std::optional<Toward> sample_toward(const Shape& shape, const Vec4& origin, const Uniform3& u);
 
 /// The density with which sample_toward() gives a direction that meets the shape; 0 from inside.

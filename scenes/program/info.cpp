@@ -3,7 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
+#include <set>
 
 #include "core/error.hpp"
 #include "render/file/image_info.hpp"
@@ -33,24 +36,71 @@ Fact count(const char* name, Number value) {
     return {name, value, fmt::format("{}", value)};
 }
 
+/// How many vertices, edges, faces and cells a hull has.
+std::array<std::size_t, 4> counts_of(const Hull& hull) {
+    std::set<std::array<std::uint16_t, 2>> edges;
+    std::size_t sides = 0;
+    for (const HullCell& cell : hull.cells) {
+        sides += cell.sides.size();
+        for (const auto& edge : cell.edges) {
+            const auto [first, second] =
+                std::minmax(cell.vertices[edge[0]], cell.vertices[edge[1]]);
+            edges.insert({first, second});
+        }
+    }
+    // Every face is a side of two cells.
+    return {hull.vertices.size(), edges.size(), sides / 2, hull.cells.size()};
+}
+
+/// The hulls of a scene, each with the first body that has it: points typed with a few digits may
+/// have more cells than they should.
+void append_hulls(Facts& facts, const Scene& scene) {
+    constexpr std::size_t kMostShown = 20;
+    std::set<const Hull*> known;
+    Json list = Json::array();
+    std::string shown;
+    for (const NamedBodies& named : scene.names)
+        std::visit(
+            [&]<class S>(const S& shape) {
+                if constexpr (std::derived_from<S, HullShape>) {
+                    if (!known.insert(&shape.body->hull).second) return;
+                    const auto [v, e, f, c] = counts_of(shape.body->hull);
+                    list.push_back({{"body", named.name},
+                                    {"vertices", v},
+                                    {"edges", e},
+                                    {"faces", f},
+                                    {"cells", c}});
+                    if (known.size() > kMostShown) return;
+                    shown += fmt::format("{}{}: {} vertices, {} edges, {} faces, {} cells",
+                                         shown.empty() ? "" : "; ", named.name, v, e, f, c);
+                }
+            },
+            scene.bodies.type_of(named.first).shape);
+    if (known.empty()) return;
+    if (known.size() > kMostShown) shown += fmt::format("; and {} more", known.size() - kMostShown);
+    facts.push_back({"hulls", list, shown});
+}
+
 Facts scene_facts(const std::filesystem::path& file, int threads) {
     const Scene scene = load_scene(file, {});
     const Plan plan = make_plan(scene, threads);
     const auto [width, height] = std::pair(scene.render.width, scene.render.height);
-    return {text("kind", "scene"),
-            text("name", scene.name),
-            text("hash", scene.hash),
-            text("motion hash", scene.motion_hash),
-            count("bodies", plan.bodies),
-            count("movable bodies", plan.movable_bodies),
-            count("materials", scene.materials.size()),
-            count("suns", scene.lights.suns.size()),
-            count("point lights", scene.lights.points.size()),
-            count("sphere lights", scene.lights.spheres.size()),
-            count("steps", plan.steps),
-            count("frames", plan.frames),
-            {"size", {width, height}, fmt::format("{}x{}", width, height)},
-            count("samples", scene.render.samples)};
+    Facts facts = {text("kind", "scene"),
+                   text("name", scene.name),
+                   text("hash", scene.hash),
+                   text("motion hash", scene.motion_hash),
+                   count("bodies", plan.bodies),
+                   count("movable bodies", plan.movable_bodies),
+                   count("materials", scene.materials.size()),
+                   count("suns", scene.lights.suns.size()),
+                   count("point lights", scene.lights.points.size()),
+                   count("sphere lights", scene.lights.spheres.size()),
+                   count("steps", plan.steps),
+                   count("frames", plan.frames),
+                   {"size", {width, height}, fmt::format("{}x{}", width, height)},
+                   count("samples", scene.render.samples)};
+    append_hulls(facts, scene);
+    return facts;
 }
 
 double energy_of(const StepFacts& row) { return row.kinetic_energy + row.potential_energy; }

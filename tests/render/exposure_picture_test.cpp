@@ -146,8 +146,8 @@ TEST(Exposure, WhatStandsStillLooksTheSameWithAnOpenShutter) {
     TestScene scene = looking_along_z();
     scene.settings.samples = 4;
     for (int i = 0; i < 12; ++i)
-        scene.add(random_shape(random, i % 3, 0.3), Vec4(0, 0, 5, 0) + random_vector(random, 0.5),
-                  random_rotor(random));
+        scene.add(random_shape(random, i % kShapeKinds, 0.3),
+                  Vec4(0, 0, 5, 0) + random_vector(random, 0.5), random_rotor(random));
     const Folder folder;
     render(scene, folder / "closed.exr");
     scene.closing = scene.bodies;

@@ -40,8 +40,8 @@ TestScene busy_scene(std::uint64_t seed = 61) {
     scene.materials[2].pattern = Pattern::kStripes;
     scene.materials[2].albedo = {0.9, 0.3, 0.1};
     for (int i = 0; i < 90; ++i)
-        scene.add(random_shape(random, i % 3, 0.5), random_vector(random, 2), random_rotor(random),
-                  static_cast<std::uint32_t>(i / 3 % 3));
+        scene.add(random_shape(random, i % kShapeKinds, 0.5), random_vector(random, 2),
+                  random_rotor(random), static_cast<std::uint32_t>(i / 3 % 3));
     scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero(), {}, 1);
     for (double angle : {0.0, 4.0}) {
         Sun sun;

@@ -21,7 +21,7 @@ TestScene lit_scene(bool with_mirrors_and_glass) {
     scene.materials[4].kind =
         with_mirrors_and_glass ? MaterialKind::kGlass : MaterialKind::kDiffuse;
     for (int i = 0; i < 15; ++i)
-        scene.add(random_shape(random, i % 3, 1.2), random_vector(random, 1.5),
+        scene.add(random_shape(random, i % kShapeKinds, 1.2), random_vector(random, 1.5),
                   random_rotor(random), static_cast<std::uint32_t>(i % 5));
     scene.add(Hyperplane{Vec4::UnitY(), -1.5}, Vec4::Zero());
     Sun sun;

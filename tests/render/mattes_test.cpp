@@ -86,7 +86,7 @@ TestScene blurred(std::uint64_t seed) {
     scene.settings.filter = FilterKind::kGaussian;
     scene.settings.filter_width = 2;
     for (int i = 0; i < 15; ++i)
-        scene.add(random_shape(random, i % 3, 1.2), random_vector(random, 1.5),
+        scene.add(random_shape(random, i % kShapeKinds, 1.2), random_vector(random, 1.5),
                   random_rotor(random), static_cast<std::uint32_t>(i % 3));
     scene.closing = scene.bodies;
     for (Vec4& position : scene.closing->position) position += random_vector(random, 0.4);

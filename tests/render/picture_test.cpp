@@ -123,7 +123,22 @@ TEST(Picture, OfSpheresIsTheClosedForm) {
     EXPECT_GT(background, 1000u);
 }
 
-/// The signed distance of a body, written once more: to a segment, from a box, to a point.
+/// Of a product of balls: how far outside the one that holds a point least.
+Real ball_level(const BallProduct& shape, const RealVec4& p) {
+    Real most = -std::numeric_limits<Real>::infinity();
+    for (const BallFactor& ball : shape)
+        most = std::max(most, ball.axes.cast<Real>().cwiseProduct(p).norm() - ball.radius);
+    return most;
+}
+Real hull_level(const HullShape& shape, const RealVec4& p) {
+    Real most = -std::numeric_limits<Real>::infinity();
+    for (const HullCell& cell : shape.body->hull.cells)
+        most = std::max(most, cell.plane.normal.cast<Real>().dot(p) - cell.plane.offset);
+    return most;
+}
+
+/// The signed distance of a body, written once more: to a segment, from a box, to a point; of the
+/// others something else that is convex, and negative inside.
 Real oracle_distance(const Shape& shape, const RealVec4& p) {
     if (const auto* s = std::get_if<Hypersphere>(&shape)) return p.norm() - s->radius;
     if (const auto* s = std::get_if<Hyperplane>(&shape))
@@ -134,6 +149,14 @@ Real oracle_distance(const Shape& shape, const RealVec4& p) {
         q[1] = p[1] > half ? p[1] - half : p[1] < -half ? p[1] + half : 0;
         return q.norm() - s->radius;
     }
+    if (!std::holds_alternative<Hyperbox>(shape))
+        return std::visit(
+            [&]<class S>(const S& s) -> Real {
+                if constexpr (std::derived_from<S, BallProduct>) return ball_level(s, p);
+                if constexpr (std::derived_from<S, HullShape>) return hull_level(s, p);
+                return 0;
+            },
+            shape);
     const auto& box = std::get<Hyperbox>(shape);
     Real outside = 0, inside = -std::numeric_limits<Real>::infinity();
     for (int i = 0; i < 4; ++i) {
@@ -150,7 +173,7 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
     Random random(52);
     std::size_t compared = 0;
     TestScene scene;
-    scene.settings.width = 80, scene.settings.height = 60;
+    scene.settings.width = 84, scene.settings.height = 63;
     scene.settings.samples = 1;
     scene.settings.max_distance = 200;
     scene.camera = random_camera(random, 7);
@@ -158,7 +181,7 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
         // One draw after the other: the order of a call's arguments is the compiler's.
         const Rotor rotor = random_rotor(random);
         const Vec4 place = random_vector(random, 2);
-        scene.add(random_shape(random, i % 3, 0.7), place, rotor);
+        scene.add(random_shape(random, i % kShapeKinds, 0.7), place, rotor);
     }
     scene.add(Hyperplane{Vec4(1, 2, -1, 1).normalized(), -6}, Vec4::Zero());
     const Image image = picture_of(scene);

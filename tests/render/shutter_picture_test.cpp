@@ -46,7 +46,7 @@ TestScene busy_shutter(Integrator integrator) {
     scene.materials[4].pattern = Pattern::kChecker;
     scene.materials[4].emission = {0.5, 0.2, 0};
     for (int i = 0; i < 30; ++i)
-        scene.add(random_shape(random, i % 3, 0.7), random_vector(random, 1.5),
+        scene.add(random_shape(random, i % kShapeKinds, 0.7), random_vector(random, 1.5),
                   random_rotor(random), static_cast<std::uint32_t>(i % 5));
     scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero(), {}, 0);
     Sun sun;

@@ -47,10 +47,52 @@ Rotor random_rotor(Random& random) {
     return exp(Bivector{angle(), angle(), angle(), angle(), angle(), angle()});
 }
 
+namespace {
+
+template <class S>
+Shape completed(S shape) {
+    complete(shape);
+    return shape;
+}
+
+Shape random_convex(Random& random, int kind, double size) {
+    const auto side = [&] { return size * uniform(random, 0.3, 1.5); };
+    if (kind == 3) {
+        Polychoron shape;
+        shape.regular = static_cast<RegularPolychoron>(uniform(random, 1, 5));
+        shape.radius = side();
+        return completed(shape);
+    }
+    if (kind == 4) {
+        Duoprism shape;
+        for (auto& sides : shape.polygons) sides = static_cast<std::int64_t>(uniform(random, 3, 6));
+        for (double& radius : shape.radii) radius = side();
+        return completed(shape);
+    }
+    if (kind == 5) {
+        Spherinder shape;
+        shape.radius = side();
+        shape.height = 2 * side();
+        return completed(shape);
+    }
+    if (kind == 6) {
+        Cubinder shape;
+        shape.radius = side();
+        for (double& full : shape.size) full = 2 * side();
+        return completed(shape);
+    }
+    Duocylinder shape;
+    for (double& radius : shape.radii) radius = side();
+    return completed(shape);
+}
+
+}  // namespace
+
 Shape random_shape(Random& random, int kind, double size) {
     const auto side = [&] { return size * uniform(random, 0.3, 1.5); };
     if (kind == 0) return Hypersphere{side()};
     if (kind == 1) return Hypercapsule{0.5 * side(), 2 * side()};
+    if (kind > 2) return random_convex(random, kind, size);
     // As g++ draws the arguments of a call: the last one first.
     Vec4 sides;
     for (int axis = 3; axis >= 0; --axis) sides[axis] = side();
@@ -62,7 +104,7 @@ TestScene cloud(std::uint64_t seed, int count, double spread, double least, doub
     TestScene scene;
     for (int i = 0; i < count; ++i) {
         const double size = std::exp(uniform(random, std::log(least), std::log(largest)));
-        scene.add(random_shape(random, i % 3, size), random_vector(random, spread),
+        scene.add(random_shape(random, i % kShapeKinds, size), random_vector(random, spread),
                   random_rotor(random));
     }
     return scene;

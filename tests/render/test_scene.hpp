@@ -53,7 +53,9 @@ Vec4 random_vector(Random& random, double half_side);
 Vec4 random_direction(Random& random);
 Rotor random_rotor(Random& random);
 
-/// kind 0 hypersphere, 1 hypercapsule, 2 hyperbox, of about the given size.
+constexpr int kShapeKinds = 8;
+/// kind 0 hypersphere, 1 hypercapsule, 2 hyperbox, 3 polychoron, 4 duoprism, 5 spherinder, 6
+/// cubinder, 7 duocylinder, of about the given size.
 Shape random_shape(Random& random, int kind, double size);
 
 /// Bodies of all bounded shapes in turn, anywhere in a cube and any way round, of sizes `least` to

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
+#include "tests/core/shape/oracle.hpp"
 
 namespace tesserae {
 namespace {
@@ -52,6 +56,69 @@ TEST(Polychora, StandOnEachOfTheirCells) {
             EXPECT_LT(now.velocity[id].norm() + norm(now.angular_velocity[id]), 1e-6)
                 << int(which) << " " << id;
         }
+    }
+}
+
+/// The middles of a cell's first vertex, edge and face.
+std::array<Vec4, 3> features_of(const Hull& hull, const HullCell& cell) {
+    const auto at = [&](std::size_t i) { return hull.vertices[cell.vertices[i]]; };
+    Vec4 face = Vec4::Zero();
+    for (std::size_t i = 0; i < cell.vertices.size(); ++i)
+        if (std::abs(cell.sides[0].normal.dot(at(i)) - cell.sides[0].offset) < 1e-9) face += at(i);
+    return {at(0), at(cell.edges[0][0]) + at(cell.edges[0][1]), face};
+}
+
+/// From a vertex, an edge or a face, leaning a little toward one of the cells there.
+TEST(Polychora, FallOnTheCellThatTheyLeanToward) {
+    using enum RegularPolychoron;
+    for (const RegularPolychoron which : {k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell}) {
+        const BodyType type = regular_type(which, 1);
+        const Hull& hull = std::get<Polychoron>(type.shape).body->hull;
+        const HullCell& cell = hull.cells[0];
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        for (const Vec4& feature : features_of(hull, cell)) {
+            const Vec4 down = (0.9 * feature.normalized() + 0.1 * cell.plane.normal).normalized();
+            const double height = down.dot(support(std::get<Polychoron>(type.shape), down));
+            add(bodies, type, {10.0 * static_cast<double>(bodies.size()), height, 0, 0},
+                Vec4::Zero(), {}, laid_down(down));
+        }
+        World world(bodies, PhysicsSettings{});
+        run(world, 2400);
+        for (BodyId id = 1; id < bodies.size(); ++id) {
+            const Vec4 down = -to_matrix(world.bodies().rotor[id]).row(1).transpose();
+            EXPECT_LT((down - cell.plane.normal).norm(), 1e-4) << int(which) << " " << id;
+            EXPECT_LT(world.bodies().velocity[id].norm(), 1e-6) << int(which) << " " << id;
+        }
+    }
+}
+
+/// Pushed at 2 m/s while they stand on a cell: the small ones slide v^2 / (2 friction g) far, those
+/// of many cells roll three times as far and more.
+TEST(Polychora, RollWhereTheyHaveManyCells) {
+    using enum RegularPolychoron;
+    for (const RegularPolychoron which : {k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell}) {
+        const BodyType type = regular_type(which, 1);
+        const HullCell& cell = std::get<Polychoron>(type.shape).body->hull.cells[0];
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        RandomGeometry random(31);
+        for (int i = 0; i < 6; ++i) {
+            Vec4 push = random.direction();
+            push[1] = 0;
+            add(bodies, type, {100.0 * i, cell.plane.offset, 0, 0}, 2 * push.normalized(), {},
+                laid_down(cell.plane.normal));
+        }
+        World world(bodies, PhysicsSettings{});
+        run(world, 2400);
+        const double slides = 4 / (2 * 0.5 * -PhysicsSettings{}.gravity[1]);
+        double mean = 0;
+        for (BodyId id = 1; id < bodies.size(); ++id)
+            mean += (world.bodies().position[id] - bodies.position[id]).norm() / 6;
+        if (which == k120Cell || which == k600Cell)
+            EXPECT_GT(mean, 3 * slides) << int(which);
+        else
+            EXPECT_NEAR(mean, slides, 0.01) << int(which);
     }
 }
 

@@ -23,8 +23,8 @@ TestScene busy_scene(Integrator integrator) {
     scene.materials[4].pattern = Pattern::kChecker;
     scene.materials[4].emission = {0.2, 0, 0};
     for (int i = 0; i < 50; ++i)
-        scene.add(random_shape(random, i % 3, 0.6), random_vector(random, 2), random_rotor(random),
-                  static_cast<std::uint32_t>(i % 5));
+        scene.add(random_shape(random, i % kShapeKinds, 0.6), random_vector(random, 2),
+                  random_rotor(random), static_cast<std::uint32_t>(i % 5));
     scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero(), {}, 4);
     for (double angle : {0.0, 3.0}) {
         Sun sun;

@@ -21,7 +21,7 @@ TEST(Path, LoneConvexBodyInAWhiteFurnaceShowsItsAlbedo) {
         scene.materials[0].albedo = {0.25, 0.5, 1};
         scene.lights.sky = Color::Ones();
         const Vec4 centre = 4 * random_direction(random);
-        scene.add(random_shape(random, i % 3, 1), centre, random_rotor(random));
+        scene.add(random_shape(random, i % kShapeKinds, 1), centre, random_rotor(random));
         const TracedScene traced(scene);
         const Color found = traced.radiance(centre.normalized(), Sampler(i, 0, 0));
         EXPECT_LT((found - scene.materials[0].albedo).abs().maxCoeff(), 1e-12);
@@ -44,7 +44,7 @@ TestScene white_heap(Random& random, int bodies) {
         const auto material = static_cast<std::uint32_t>(random() % 5);
         const Rotor rotor = random_rotor(random);
         const Vec4 place = 4 * Vec4::UnitZ() + random_vector(random, 0.8);
-        const auto kind = static_cast<int>(random() % 3);
+        const auto kind = static_cast<int>(random() % kShapeKinds);
         scene.add(random_shape(random, kind, 0.8), place, rotor, material);
     }
     return scene;
@@ -193,8 +193,9 @@ void expect_reference(int more) {
     scene.materials[1].roughness = 0.7;
     scene.materials[2].emission = {0.3, 0.1, 0.5};
     for (int i = 0; i < 8; ++i)
-        scene.add(random_shape(random, i % 3, 0.7), 4 * Vec4::UnitZ() + random_vector(random, 1.2),
-                  random_rotor(random), static_cast<std::uint32_t>(i % 3));
+        scene.add(random_shape(random, i % kShapeKinds, 0.7),
+                  4 * Vec4::UnitZ() + random_vector(random, 1.2), random_rotor(random),
+                  static_cast<std::uint32_t>(i % 3));
     scene.add(Hyperplane{Vec4::UnitY(), -1.5}, Vec4::Zero());
     Sun sun;
     sun.direction = Vec4(0.4, -1, 0.3, 0.5).normalized();
@@ -208,7 +209,7 @@ void expect_reference(int more) {
         if (i % 4 == 3)
             scene.lights.spheres.push_back({place, 0.3, Color(2, 1, 4)});
         else
-            scene.add(random_shape(random, i % 3, 0.3), place, random_rotor(random), 2);
+            scene.add(random_shape(random, i % kShapeKinds, 0.3), place, random_rotor(random), 2);
     }
     const TracedScene traced(scene);
     double worst = 0, square = 0;
@@ -365,8 +366,8 @@ TEST(Path, PathsSideBySideBringWhatEachBringsAlone) {
     scene.materials[2].kind = MaterialKind::kGlass;
     scene.materials[3].kind = MaterialKind::kRough;
     for (std::uint32_t i = 0; i < 60; ++i)
-        scene.add(random_shape(random, i % 3, 1), random_vector(random, 4), random_rotor(random),
-                  i % 4);
+        scene.add(random_shape(random, i % kShapeKinds, 1), random_vector(random, 4),
+                  random_rotor(random), i % 4);
     scene.lights.suns.emplace_back();
     scene.lights.sky = Color::Constant(0.2);
     for (const Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {

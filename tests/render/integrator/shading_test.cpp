@@ -202,7 +202,7 @@ TEST(Shading, NormalsOfTurnedBodiesAreTheGradient) {
     for (int i = 0; i < 600; ++i) {
         TestScene scene;
         const Vec4 centre = 4 * random_direction(random);
-        scene.add(random_shape(random, i % 3, 1), centre, random_rotor(random));
+        scene.add(random_shape(random, i % kShapeKinds, 1), centre, random_rotor(random));
         const Vec4 direction = centre.normalized();
         const Surface s = shade(scene, direction).surface;
         const Mat4 turn = to_matrix(scene.bodies.rotor[0]).transpose();

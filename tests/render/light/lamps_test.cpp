@@ -21,7 +21,7 @@ TestScene many_lamps(Random& random, int count) {
         if (i % 4 == 3)
             scene.lights.spheres.push_back({place, 0.3, Color(3, 1, 1)});
         else
-            scene.add(random_shape(random, i % 3, 0.5), place, random_rotor(random),
+            scene.add(random_shape(random, i % kShapeKinds, 0.5), place, random_rotor(random),
                       i % 5 == 0 ? 2u : 1u);
     }
     scene.add(Hyperplane{Vec4::UnitY(), -9}, Vec4::Zero(), {}, 1);

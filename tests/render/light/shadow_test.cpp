@@ -271,7 +271,7 @@ TEST(Shadows, TreeLosesNoBody) {
         TestScene scene;
         const int count = round < 10 ? round : 300;
         for (int i = 0; i < count; ++i)
-            scene.add(random_shape(random, i % 3, std::exp(uniform(random, -3, 0))),
+            scene.add(random_shape(random, i % kShapeKinds, std::exp(uniform(random, -3, 0))),
                       random_vector(random, 4), random_rotor(random));
         if (round % 2 == 1) scene.add(Hyperplane{Vec4::UnitY(), -4}, Vec4::Zero());
         const PlacedBodies placed = place_bodies(scene.picture(), random_vector(random, 4));

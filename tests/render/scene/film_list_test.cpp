@@ -27,7 +27,7 @@ TEST(FilmList, FindsWhatTryingAllBodiesFinds) {
     for (int round = 0; round < 24; ++round) {
         TestScene scene;
         for (int i = 0; i < 150; ++i)
-            scene.add(random_shape(random, i % 3, std::exp(uniform(random, -9, 0))),
+            scene.add(random_shape(random, i % kShapeKinds, std::exp(uniform(random, -9, 0))),
                       random_vector(random, 2), random_rotor(random));
         if (round % 3 == 0) scene.add(Hyperplane{Vec4::UnitY(), -2}, Vec4::Zero());
         scene.camera = random_camera(random, round % 4 == 0 ? 1 : round % 4 == 1 ? 1e5 : 6);

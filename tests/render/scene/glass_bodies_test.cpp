@@ -14,7 +14,7 @@ TestScene glass_cloud(Random& random, int count) {
     scene.materials.resize(2);
     scene.materials[1].kind = MaterialKind::kGlass;
     for (int i = 0; i < count; ++i)
-        scene.add(random_shape(random, i % 3, std::exp(uniform(random, -2, 0.5))),
+        scene.add(random_shape(random, i % kShapeKinds, std::exp(uniform(random, -2, 0.5))),
                   random_vector(random, 4), random_rotor(random), random() % 2);
     scene.add(Hyperplane{Vec4::UnitY(), -3}, Vec4::Zero(), {}, random() % 2);
     return scene;

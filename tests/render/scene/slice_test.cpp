@@ -21,8 +21,9 @@ TestScene slice_cloud(std::uint64_t seed, int count, double spread, bool spheres
     Random random(seed);
     TestScene scene;
     for (int i = 0; i < count; ++i)
-        scene.add(random_shape(random, spheres_only ? 0 : i % 3, uniform(random, 0.1, 0.8)),
-                  random_vector(random, spread), random_rotor(random));
+        scene.add(
+            random_shape(random, spheres_only ? 0 : i % kShapeKinds, uniform(random, 0.1, 0.8)),
+            random_vector(random, spread), random_rotor(random));
     return scene;
 }
 

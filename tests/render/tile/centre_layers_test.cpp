@@ -93,7 +93,7 @@ struct Motion {
                 turn_at_random(random, body_motion, turn[static_cast<std::size_t>(k)]);
                 at[static_cast<std::size_t>(k)] += random_vector(random, body_motion);
             }
-            scene.add(random_shape(random, i % 3, 1), place, turn[1].rotor);
+            scene.add(random_shape(random, i % kShapeKinds, 1), place, turn[1].rotor);
             turns.push_back(turn), places.push_back(at);
         }
         const Vec4 normal = (scene.camera.position - middle + 2 * scene.camera.up).normalized();

@@ -31,6 +31,39 @@ TEST(Info, TellsScenesTrajectoriesAndImagesApart) {
     }
 }
 
+/// Points with a few digits split cells: that shows.
+TEST(Info, CountsWhatHullsHave) {
+    const Folder folder("hulls");
+    const auto scene = folder.write("hulls.toml", R"([[body]]
+name = "a"
+shape = "polychoron"
+regular = "24-cell"
+radius = 1
+[[body]]
+name = "b"
+shape = "duoprism"
+polygons = [3, 5]
+radii = [1, 1]
+position = [9, 0, 0, 0]
+[[body]]
+name = "c"
+shape = "polychoron"
+regular = "24-cell"
+radius = 1
+position = [-9, 0, 0, 0]
+)");
+    const Outcome info = tesserae({"info", scene, "--json"});
+    ASSERT_EQ(info.status, 0) << info.err;
+    using nlohmann::json;
+    const auto row = [](const char* body, int v, int e, int f, int c) {
+        return json{{"body", body}, {"vertices", v}, {"edges", e}, {"faces", f}, {"cells", c}};
+    };
+    EXPECT_EQ(json::parse(info.out)["hulls"],
+              (json::array({row("a", 24, 96, 96, 24), row("b", 15, 30, 23, 8)})));
+    EXPECT_NE(tesserae({"info", scene}).out.find("b: 15 vertices, 30 edges, 23 faces, 8 cells"),
+              std::string::npos);
+}
+
 TEST(Info, SaysHowWellATrajectoryKeepsWhatMotionKeeps) {
     const Folder folder("diagnostics");
     const auto scene = folder.write("fall.toml", R"([physics]
