@@ -92,8 +92,9 @@ void contacts_from(const ConvexPair& pair, const Vec4& guess, std::vector<Contac
     const auto level_a = [&](const Vec4& p) { return core_a.level(p); };
     const auto level_b = [&](const Vec4& p) { return core_b.level(p); };
     PairContacts out{0, 1, false, list};
-    convex_contacts({core_a, 0, piece_a, level_a}, {core_b, 0, piece_b, level_b}, guess,
-                    bounding_radius(a) + bounding_radius(b), pair.a.position, 0, out);
+    const double size = bounding_radius(a) + bounding_radius(b);
+    convex_contacts({core_a, 0, piece_a, level_a}, {core_b, 0, piece_b, level_b},
+                    separation_of(core_a, core_b, guess, size, 0), size, pair.a.position, 0, out);
 }
 
 /// Uniformly random but for details; in three dimensions w stays.

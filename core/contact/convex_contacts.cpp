@@ -21,6 +21,9 @@ constexpr double kBorder = 1e-10;
 
 /// Points nearer than this part of the size are one.
 constexpr double kSamePoint = 1e-6;
+/// Separations that differ by less than this part of the size are one: it is how much bodies at
+/// rest still rock.
+constexpr double kAsNear = 1e-7;
 
 // What a point is called: what kind it is, whose, and of which vertices.
 enum class PointKind : std::uint32_t { kNearest, kVertex, kEdgeBegin, kEdgeEnd };
@@ -133,10 +136,11 @@ class PieceContacts {
         });
     }
 
-    /// The nearest points; another that is as near stands for them.
+    /// The nearest points; another that is as near stands for them: of flat pieces that lie on each
+    /// other it would be another place each step, which no warm start survives.
     void add_nearest(const ConvexSeparation& nearest, double separation) {
         for (ContactPoint& point : points_)
-            if (point.separation <= separation + border_) {
+            if (point.separation <= separation + kAsNear * size_) {
                 point.separation = separation;
                 return;
             }
@@ -228,10 +232,9 @@ double gap_along(const ConvexBody& a, const ConvexBody& b, const Vec4& direction
 
 }  // namespace
 
-void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess, double size,
-                     const Vec4& origin, double margin, PairContacts& out) {
+void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSeparation& nearest,
+                     double size, const Vec4& origin, double margin, PairContacts& out) {
     const double radii = a.radius + b.radius;
-    const ConvexSeparation nearest = separation_of(a.core, b.core, guess, size, margin + radii);
     if (!(nearest.distance - radii <= margin)) return;
     Vec4 normal = nearest.normal;
     double distance = nearest.distance;

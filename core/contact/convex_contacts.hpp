@@ -44,10 +44,10 @@ struct ConvexBody {
 /// body's piece that faces it the corners of both, each clipped to the other along the normal;
 /// where neither is flat, as two bodies side by side on their round sides, those that are near the
 /// other.
-/// @param guess    from a to b, not zero
-/// @param size     sum of the bounding radii [m]
-/// @param origin   of both bodies' coordinates, world
-void convex_contacts(const ConvexBody& a, const ConvexBody& b, const Vec4& guess, double size,
-                     const Vec4& origin, double margin, PairContacts& out);
+/// @param nearest   of the cores
+/// @param size      sum of the bounding radii [m]
+/// @param origin    of both bodies' coordinates, world
+void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSeparation& nearest,
+                     double size, const Vec4& origin, double margin, PairContacts& out);
 
 }  // namespace tesserae

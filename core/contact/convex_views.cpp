@@ -147,6 +147,23 @@ void piece_along(const Hypercapsule& shape, const Vec4&, SurfacePiece& piece) {
     piece.sides = {{Vec4::UnitY(), 0.5 * shape.height}, {-Vec4::UnitY(), 0.5 * shape.height}};
 }
 
+PlacedBalls placed_core(const BallProduct& shape, const Mat4& turn, const Vec4& centre) {
+    PlacedBalls core = {{}, Vec4::Zero(), turn, centre};
+    for (std::size_t i = 0; i < shape.factors; ++i) {
+        core.radius[static_cast<int>(i)] = shape.factor[i].radius;
+        for (std::size_t axis = 0; axis < 4; ++axis)
+            if (shape.factor[i].axes[static_cast<int>(axis)] > 0)
+                core.group[axis] = static_cast<std::uint8_t>(i);
+    }
+    return core;
+}
+PlacedBalls placed_core(const Hyperbox& shape, const Mat4& turn, const Vec4& centre) {
+    return {{0, 1, 2, 3}, 0.5 * shape.size, turn, centre};
+}
+PlacedBalls placed_core(const Hypercapsule& shape, const Mat4& turn, const Vec4& centre) {
+    return {{0, 1, 0, 0}, {0, 0.5 * shape.height, 0, 0}, turn, centre};
+}
+
 void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece) {
     const auto move = [&](HalfSpace& plane) {
         plane.normal = rotation * plane.normal;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <concepts>
+
 #include "core/contact/convex_contacts.hpp"
+#include "core/convex/placed_balls.hpp"
 #include "core/shape/ball_product.hpp"
 #include "core/shape/hull_shape.hpp"
 #include "core/shape/hyperbox.hpp"
@@ -44,6 +47,20 @@ inline Vec4 core_support(const BallProduct& s, const Vec4& direction) {
     return support(s, direction);
 }
 
+/// Cores that are products of balls.
+PlacedBalls placed_core(const BallProduct& shape, const Mat4& turn, const Vec4& centre);
+PlacedBalls placed_core(const Hyperbox& shape, const Mat4& turn, const Vec4& centre);
+PlacedBalls placed_core(const Hypercapsule& shape, const Mat4& turn, const Vec4& centre);
+template <class S>
+concept HasBallCore = requires(const S& shape, const Mat4& turn, const Vec4& centre) {
+    { placed_core(shape, turn, centre) } -> std::same_as<PlacedBalls>;
+};
+/// Two such, of which one is round: boxes and capsules are better off as polytopes.
+template <class A, class B>
+constexpr bool kAreBallCores = HasBallCore<A>&& HasBallCore<B> &&
+                               (std::derived_from<A, BallProduct> ||
+                                std::derived_from<B, BallProduct>);
+
 /// Moves a piece from the body's frame.
 void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece);
 
@@ -77,9 +94,18 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
         const Vec4 own = turn_b.transpose() * (point - between);
         return {signed_distance(b, own) + core_radius(b), turn_b * normal(b, own)};
     };
-    const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
+    const auto nearest = [&] {
+        if constexpr (kAreBallCores<A, B>) {
+            return separation_of(placed_core(a, turn_a, Vec4::Zero()),
+                                 placed_core(b, turn_b, between));
+        } else {
+            const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
+            return separation_of(core_a, core_b, guess, size,
+                                 margin + core_radius(a) + core_radius(b));
+        }
+    }();
     convex_contacts({core_a, core_radius(a), piece_a, level_a},
-                    {core_b, core_radius(b), piece_b, level_b}, guess, size, pose_a.position,
+                    {core_b, core_radius(b), piece_b, level_b}, nearest, size, pose_a.position,
                     margin, out);
 }
 

@@ -143,9 +143,10 @@ TEST(RoundProducts, RollAsFreelyAsTheyAreRound) {
             EXPECT_NEAR(v[along], rolls ? 1 / (1 + inertia) : 0, rolls ? 2e-3 : 1e-6)
                 << s.name << " along " << along;
             // What slips comes v^2 / (2 friction g) far.
-            if (!rolls)
+            if (!rolls) {
                 EXPECT_NEAR(world.bodies().position[1][along], 1 / (2 * 0.5 * 9.81), 3e-3)
                     << s.name;
+            }
         }
         EXPECT_EQ(rolled, freedoms) << s.name;
     };
