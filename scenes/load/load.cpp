@@ -63,6 +63,7 @@ Scene load_scene(const std::filesystem::path& file, std::span<const std::string>
     load_render(root, origin, scene, out);
     require_view(scene, origin);
 
+    find_unused_keys(root, origin, scene);
     scene.hash = hex_hash(out.text());
     scene.motion_hash = motion_hash(out.text(), kMotionVersion);
     scene.effective = out.take_text();
