@@ -28,6 +28,7 @@ struct Material {
     Pattern pattern = Pattern::kNone;
     Color pattern_albedo = Color::Constant(0.2);
     double pattern_size = 0.5;       ///< edge of a cell, width of a stripe [m]
+    double albedo_variation = 0;     ///< see tint_of(), 0 to 1
     double ior = 1.5;                ///< of glass against empty space, > 1
     double roughness = 0.3;          ///< of rough, 0 to 1; 0 is a mirror
     Color emission = Color::Zero();  ///< radiance toward every side, >= 0, of any kind

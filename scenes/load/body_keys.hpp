@@ -53,7 +53,8 @@ void physics_keys(auto& self, const auto& visit) {
     visit("duration", self.duration, Rule::kNonNegative);
     visit("steps_per_second", self.steps_per_second, Rule::kPositive);
     visit("iterations", self.iterations, IntegerRange{1, 10000});
-    visit("tolerance", self.tolerance, NonNegativeOrUnwritten{PhysicsSettings{}.tolerance});
+    visit("tolerance", self.tolerance,
+          RealOrUnwritten{interval_of(Rule::kNonNegative), PhysicsSettings{}.tolerance});
     visit("substeps", self.substeps, IntegerRange{1, 1000});
     visit("solver", self.solver, Names{kSolvers});
     visit("integrator", self.integrator, Names{kRotationIntegrators});
@@ -130,7 +131,8 @@ void mass_keys(auto& self, const auto& visit) {
 /// [[body]] and [[lattice]]: how they touch and look
 void surface_keys(auto& self, const auto& visit, const MaterialNumbers& materials) {
     visit("friction", self.type.friction, Rule::kNonNegative);
-    visit("rolling_friction", self.type.rolling_friction, NonNegativeOrUnwritten{});
+    visit("rolling_friction", self.type.rolling_friction,
+          RealOrUnwritten{interval_of(Rule::kNonNegative)});
     visit("restitution", self.type.restitution, Interval{0, 1});
     visit("fixed", self.type, Flags<BodyType>{kFixed});
     visit("material", self.material, MaterialName{materials});

@@ -56,6 +56,7 @@ void material_keys(auto& self, const auto& visit) {
     visit("pattern", self.pattern, Names{kPatterns});
     visit("pattern_albedo", self.pattern_albedo, kUnit);
     visit("pattern_size", self.pattern_size, Rule::kPositive);
+    visit("albedo_variation", self.albedo_variation, RealOrUnwritten{kUnit});
     visit("ior", self.ior, Interval{1, kLargest, true});
     visit("roughness", self.roughness, kUnit);
     visit("emission", self.emission, kNotNegative);

@@ -57,10 +57,11 @@ struct WriteKeys {
 };
 
 /// Not written where it has its default: a key that is younger than scenes whose hashes stay.
-struct NonNegativeOrUnwritten {
+struct RealOrUnwritten {
+    Interval interval;
     double unwritten = 0;
     void read(TableReader& reader, const char* key, double& value) const {
-        reader.read(key, value, Rule::kNonNegative);
+        reader.read(key, value, interval);
     }
     void write(EffectiveWriter& out, const char* key, double value) const {
         if (value != unwritten) out.key(key, value);
@@ -99,7 +100,7 @@ struct Names {
     }
 };
 
-/// The first is not written: see NonNegativeOrUnwritten.
+/// The first is not written: see RealOrUnwritten.
 struct NamesOrUnwritten : Names {
     void write(EffectiveWriter& out, const char* key, auto value) const {
         if (static_cast<std::size_t>(value) != 0) Names::write(out, key, value);

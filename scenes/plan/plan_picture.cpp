@@ -112,6 +112,12 @@ void decide_picture(const Scene& scene, Plan& plan) {
     const render::PictureNeeds needs = render::needs_of(picture_of(scene, scene.camera));
     decide_camera(scene, needs, plan);
     decide_light(scene, needs, plan);
+    const auto varied =
+        std::count_if(scene.materials.begin(), scene.materials.end(),
+                      [](const render::Material& m) { return m.albedo_variation > 0; });
+    plan.decide("colour variation", varied > 0,
+                fmt::format("{} material(s) differ a little from body to body", varied),
+                "albedo_variation = 0 of all materials");
     plan.decide("transparent sky", scene.render.sky == render::Sky::kTransparent,
                 "view rays that meet nothing bring no light", "sky = \"opaque\"");
     for (const auto& [name, member] : kChannels)

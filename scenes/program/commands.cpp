@@ -92,7 +92,7 @@ void plan_command(const CommandLine& line) {
     std::optional<SliceReport> slice;
     parallel::Threads(line.threads).run([&] {
         cost = measure_cost(work.scene, work.plan, line.trajectory, frames, kPlanSeconds);
-        if (line.trajectory.empty()) return;
+        if (line.trajectory.empty() && work.plan.moves) return;
         slice = look_at_slice(work.scene, line.trajectory, frames);
         for (std::string& warning : slice->warnings)
             work.plan.warnings.push_back(std::move(warning));

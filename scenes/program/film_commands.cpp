@@ -117,10 +117,10 @@ class Filming {
         parallel::Threads(line_.threads).run([&] {
             const bool simulates =
                 trajectory_.empty() && (is_run_ ? scene().physics.has_value() : work_.plan.moves);
-            tell_changed_look();
-            if (is_run_) tell_cost();
+            const bool is_new = !fs::exists(folder_ / "frames"), is_changed = tell_changed_look();
+            if (is_run_ && is_new) tell_cost();
             if (simulates) text = simulated(json["simulate"]) + "\n";
-            if (is_run_) tell_slice();
+            if (is_run_ && (is_new || is_changed)) tell_slice();
             filmed = film(scene(), frames_, trajectory_, folder_, replace_, line_.quiet);
         });
         json["render"] = to_json(filmed);
@@ -139,11 +139,12 @@ class Filming {
         if (!line_.quiet) fmt::print(stderr, "tesserae: {}\n", text);
     }
 
-    void tell_changed_look() const {
+    bool tell_changed_look() const {
         const std::string change = require_folder_of(scene(), folder_, replace_);
         if (!change.empty())
             tell(fmt::format("{}: {}: frames that look otherwise are rendered again",
                              folder_.string(), change));
+        return !change.empty();
     }
 
     /// What a run from nothing will cost.
@@ -152,7 +153,7 @@ class Filming {
         if (!line_.draft)
             for (const std::string& warning : work_.plan.warnings)
                 tell(fmt::format("warning: {}", warning));
-        if (fs::exists(folder_ / "frames") || fs::exists(line_.output / "trajectory.h5")) return;
+        if (fs::exists(line_.output / "trajectory.h5")) return;
         constexpr double kSeconds = 1;
         const Cost cost = measure_cost(scene(), work_.plan, {}, frames_, kSeconds);
         tell(
@@ -161,9 +162,17 @@ class Filming {
                         cost.guessed.empty() ? "" : ", partly a guess (tesserae plan tells more)"));
     }
 
+    /// When bodies are in the picture, and what is wrong with that.
     void tell_slice() const {
         if (line_.quiet || frames_.empty()) return;
-        for (const std::string& warning : look_at_slice(scene(), trajectory_, frames_).warnings)
+        const SliceReport report = look_at_slice(scene(), trajectory_, frames_);
+        constexpr std::size_t kMostNames = 12;
+        const std::size_t shown = std::min(kMostNames, report.names.size());
+        for (std::size_t i = 0; i < shown; ++i) tell(text_of(report.names[i]));
+        if (shown < report.names.size())
+            tell(fmt::format("and {} names more (tesserae plan --trajectory tells of all)",
+                             report.names.size() - shown));
+        for (const std::string& warning : report.warnings)
             tell(fmt::format("warning: {}", warning));
     }
 

@@ -247,6 +247,38 @@ TEST(Albedo, StripesDependOnXAlone) {
     }
 }
 
+TEST(Albedo, VariesFromBodyToBodyWithinItsBounds) {
+    Color sum = Color::Zero(), squares = Color::Zero();
+    constexpr int kBodies = 20'000;
+    for (BodyId id = 0; id < kBodies; ++id) {
+        const Color tint = tint_of(id, 0.4);
+        ASSERT_TRUE((tint >= 0.6).all() && (tint <= 1).all()) << id;
+        // By three quarters all colours vary alike.
+        EXPECT_LE(tint.maxCoeff() - tint.minCoeff(), 0.1 + 1e-12);
+        EXPECT_FALSE((tint == tint_of(id + 1, 0.4)).all()) << id;
+        sum += tint, squares += tint * tint;
+    }
+    const Color mean = sum / kBodies, variance = squares / kBodies - mean * mean;
+    // Of 0.75 u + 0.25 v, each uniform: (9 + 1) / 16 / 12.
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(mean[i], 0.8, 0.003);
+        EXPECT_NEAR(variance[i], 0.16 * 10 / 192, 2e-4);
+    }
+}
+
+TEST(Albedo, OfASurfaceIsThatOfItsBody) {
+    TestScene scene;
+    scene.materials[0].albedo = {0.5, 0.6, 0.7};
+    scene.materials[0].albedo_variation = 0.5;
+    for (int i = 0; i < 5; ++i) scene.add(Hypersphere{0.4}, Vec4(i - 2, 0, 5, 0));
+    for (int i = 0; i < 5; ++i) {
+        const Vec4 toward = scene.bodies.position[static_cast<BodyId>(i)].normalized();
+        const Surface s = shade(scene, toward).surface;
+        const Color tint = tint_of(static_cast<BodyId>(i), 0.5);
+        EXPECT_TRUE((s.albedo == scene.materials[0].albedo * tint).all()) << i;
+    }
+}
+
 TEST(Albedo, FacesOnCellBoundariesDoNotFlicker) {
     // The faces of this box lie exactly between cells 0 and 1, and those of the plane between -1
     // and 0 or so: every point of a face takes the cells just below it.

@@ -52,7 +52,7 @@ std::string other(double value, Interval interval) {
 }
 std::string other(double value, Rule rule) { return other(value, interval_of(rule)); }
 std::string other(double value, NextTime) { return other(value, Interval{}); }
-std::string other(double value, NonNegativeOrUnwritten) { return other(value, Rule::kNonNegative); }
+std::string other(double value, RealOrUnwritten rule) { return other(value, rule.interval); }
 std::string other(const Vec4&, Rule) { return kOtherVector; }
 std::string other(const Vec4&, Turn) { return kOtherVector; }
 std::string other(const Vec4&, Spacing) { return kOtherVector; }

@@ -71,7 +71,7 @@ TEST(Rehearsal, GuessesWhatItHadNoTimeFor) {
     EXPECT_GE(rehearsal.taken, 1u);
     // What is left costs at least as much a step as the cheapest that were taken.
     EXPECT_GT(rehearsal.seconds, 100 * 0.05);
-    EXPECT_GE(rehearsal.contacts, 3 * 24) << "24 balls come to rest";
+    EXPECT_NEAR(rehearsal.contacts, 2.3 * 24, 1e-9) << "24 balls come to rest";
 }
 
 TEST(Cost, IsThatOfTheFilm) {
