@@ -6,14 +6,12 @@
 #include <memory>
 #include <mutex>
 
-#include "core/error.hpp"
 #include "scenes/export/round_section.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
-/// Parts of an icosahedron's edge, usual 3 to 12: more than 1.3 million triangles a ball help no
-/// one.
+/// Parts of an icosahedron's edge, usual 3 to 12; more than kFinestTolerance asks for.
 constexpr int kMostParts = 256;
 
 /// A unit ball's mesh and how far its faces' planes come to the centre at least.
@@ -101,14 +99,7 @@ const GeodesicBall& geodesic_ball(int parts) {
 const GeodesicBall& ball_within(double tolerance) {
     // The gap falls with the square of the parts; an icosahedron's own is 0.2054.
     int parts = std::clamp(static_cast<int>(std::sqrt(0.15 / tolerance)), 1, kMostParts);
-    while (geodesic_ball(parts).gap > tolerance) {
-        if (parts == kMostParts)
-            throw InputError(fmt::format(
-                "--tolerance: {} of a ball's radius needs more than {} triangles for it; expected "
-                "a larger one",
-                tolerance, 20 * kMostParts * kMostParts));
-        ++parts;
-    }
+    while (geodesic_ball(parts).gap > tolerance && parts < kMostParts) ++parts;
     return geodesic_ball(parts);
 }
 

@@ -135,7 +135,7 @@ bool has_mesh_hash(const std::filesystem::path& file, const std::string& hash) {
     std::string begin(400, '\0');
     std::ifstream in(file, std::ios::binary);
     in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    return begin.find("tesserae " + hash) != std::string::npos;
+    return begin.find(hash) != std::string::npos;
 }
 
 std::string base64(std::string_view bytes) {

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <numeric>
 
+#include "core/error.hpp"
 #include "scenes/export/convex_section.hpp"
 
 namespace tesserae::scenes {
@@ -49,6 +50,13 @@ Mesh polytope_section(const HullFaces& faces, const PlacedShape& at) {
     return hull_mesh(points);
 }
 
+void require_tolerance(double tolerance, double radius) {
+    if (tolerance > 0 && tolerance < kFinestTolerance * radius)
+        throw InputError(fmt::format(
+            "--tolerance {}: there is a body of radius {} m: expected at least {} of that, {:.3g}",
+            tolerance, radius, kFinestTolerance, kFinestTolerance * radius));
+}
+
 }  // namespace
 
 Mesh plane_patch(const Vec3& normal, double offset, double half_side) {
@@ -79,6 +87,8 @@ Sections::Sections(const Bodies& bodies, const SectionSettings& settings)
                     faces_[type] = faces_of(shape.body->hull);
                 else if constexpr (std::same_as<S, Hyperbox>)
                     faces_[type] = faces_of_box(shape.size);
+                else if constexpr (S::kBounded)
+                    require_tolerance(settings_.tolerance, bounding_radius(shape));
             },
             bodies.types[type].shape);
 }

@@ -17,10 +17,13 @@ struct SectionSettings {
 
 /// In parts of a body's diameter.
 constexpr double kUsualTolerance = 1e-3;
+/// In parts of its bounding radius: some 400 000 triangles a ball. Finer ones help no one.
+constexpr double kFinestTolerance = 1e-5;
 
 /// Bodies' sections by the slice of a frame, as meshes in the film's space.
 class Sections {
   public:
+    /// @throws InputError   the tolerance is below kFinestTolerance of a round body's radius
     Sections(const Bodies& bodies, const SectionSettings& settings);
 
     /// Polytopes exactly, round bodies within the tolerance, a plane as one polygon that faces its

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
+#include "core/error.hpp"
 #include "scenes/plot/gnuplot.hpp"
 #include "tests/error_of.hpp"
 #include "tests/scenes/program/program.hpp"
@@ -68,7 +70,9 @@ TEST(PlotScript, DrawsWhatHasNoLogarithmAndNoLength) {
 }
 
 TEST(Gnuplot, ItsErrorsAreOurs) {
-    EXPECT_NE(error_of<RunError>([] { gnuplot_output("plot nothing\n"); }).find("gnuplot: failed"),
+    EXPECT_NE(tesserae::testing::error_of<RunError>([] {
+                  gnuplot_output("plot nothing\n");
+              }).find("gnuplot: failed"),
               std::string::npos);
 }
 
