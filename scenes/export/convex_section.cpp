@@ -127,6 +127,32 @@ std::vector<Vec3> first_directions() {
     return directions;
 }
 
+/// Points that span the section however thin it is: farthest along fixed directions, then about the
+/// longest way between two of them, then across the widest plane through it.
+std::vector<Vec3> first_points(const SectionSupport& section) {
+    std::vector<Vec3> points;
+    for (const Vec3& direction : first_directions()) points.push_back(section.farthest(direction));
+    Vec3 way = Vec3::Zero();
+    for (const Vec3& point : points)
+        if ((point - points[0]).norm() > way.norm()) way = point - points[0];
+    if (way.isZero(0)) return points;
+
+    const Vec3 along = way.normalized(), across = along.unitOrthogonal();
+    const Vec3 third = along.cross(across);
+    Vec3 aside = Vec3::Zero();
+    for (int i = 0; i < 8; ++i) {
+        const double angle = 0.25 * std::numbers::pi * i + 0.1;
+        points.push_back(section.farthest(std::cos(angle) * across + std::sin(angle) * third));
+        const Vec3 from = points.back() - points[0], off = from - from.dot(along) * along;
+        if (off.norm() > aside.norm()) aside = off;
+    }
+    if (aside.isZero(0)) return points;
+    const Vec3 normal = along.cross(aside).normalized();
+    points.push_back(section.farthest(normal));
+    points.push_back(section.farthest(-normal));
+    return points;
+}
+
 }  // namespace
 
 Mesh hull_mesh(const std::vector<Vec3>& points) {
@@ -156,7 +182,7 @@ Mesh convex_section(const Shape& shape, const PlacedShape& at, double tolerance)
         points.push_back(point);
         return true;
     };
-    for (const Vec3& direction : first_directions()) add(section.farthest(direction));
+    for (const Vec3& point : first_points(section)) add(point);
     // Every round adds points that were beyond, usually in 5 to 12 rounds; one that adds none is
     // the last.
     bool is_growing = true;
