@@ -32,8 +32,8 @@ struct ExportReport {
     std::filesystem::path first_to_open;  ///< the first frame, or the list of all
 };
 
-/// Far enough that a picture shows the same horizon: a thousand times as far as any body without a
-/// pattern of going away is from the first frame's camera, rounded up to a power of two [m].
+/// Where planes end [m], so far that a picture shows the same horizon: more than a thousand times
+/// as far from the first frame's camera as any body is at the start, a power of two.
 double usual_extent(const Scene& scene);
 
 /// Writes the slice's bodies of every frame as meshes into folder/NAME.0000.ply or .vtp, and for
@@ -44,7 +44,8 @@ double usual_extent(const Scene& scene);
 ///
 /// A frame's meshes are the sections (section.hpp) by the slice of its camera at its time, the
 /// middle one of a thick slice or of a sheet, of all visible bodies, also of those behind the
-/// camera. Their coordinates are those of SliceFrame.
+/// camera. Their coordinates are those of SliceFrame. All of a frame are in memory at once, some 60
+/// bytes a triangle.
 /// @throws InputError   the folder holds another scene's files and not `overwrite`; the trajectory
 ///                      is of another motion or lacks steps
 /// @throws RunError     a file cannot be written

@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::uint32_t kNowhere = ~std::uint32_t{0};
 
+/// A polyhedron of less than this part of its size's cube has no inside but rounding.
+constexpr double kFlat = 1e-14;
+
 /// A polygon between two cells that is cut: a side of the polygons in which both are cut.
 struct CutFace {
     std::array<std::uint32_t, 2> cells, points;  ///< points: numbers of the edges that are cut
@@ -217,11 +220,13 @@ std::optional<Mesh> hull_section(const HullFaces& hull, const std::vector<Vec4>&
     }
     if (mesh.vertices.size() < 4 || mesh.faces() < 4) return Mesh();
     const double volume = volume_of(mesh);
+    double size = 0;
+    for (const Vec3& v : mesh.vertices) size = std::max(size, (v - mesh.vertices[0]).norm());
     if (volume < 0)
         for (std::size_t f = 0, begin = 0; f < mesh.faces(); begin = mesh.face_end[f++])
             std::reverse(mesh.corners.begin() + static_cast<std::ptrdiff_t>(begin),
                          mesh.corners.begin() + mesh.face_end[f]);
-    return volume == 0 ? Mesh() : mesh;
+    return std::abs(volume) <= kFlat * size * size * size ? Mesh() : mesh;
 }
 
 }  // namespace tesserae::scenes

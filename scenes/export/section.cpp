@@ -64,7 +64,8 @@ Mesh plane_patch(const Vec3& normal, double offset, double half_side) {
     // Reaches beyond the cube on all sides.
     const double reach = 4 * half_side + std::abs(offset);
     std::vector<Vec3> polygon;
-    for (const auto& [u, v] : {std::pair(1, 1), {-1, 1}, {-1, -1}, {1, -1}})
+    for (const auto& [u, v] :
+         {std::pair(1, 1), std::pair(-1, 1), std::pair(-1, -1), std::pair(1, -1)})
         polygon.push_back(offset * normal + reach * (u * across + v * third));
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0})
