@@ -22,6 +22,7 @@ packages=(
     libfmt-dev            # text: fmt 9.1, 10.1
     nlohmann-json3-dev    # JSON 3.11
     libxxhash-dev         # hashes: xxHash 0.8
+    gnuplot-nox           # tesserae plot, when it runs: gnuplot 5.4, 6.0
     libgtest-dev          # tests: GoogleTest 1.12, 1.16
 )
 

@@ -1,5 +1,7 @@
 #include "core/convex/qhull_facets.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -33,6 +35,16 @@ struct Qhull {
     Qhull& operator=(const Qhull&) = delete;
 };
 
+/// Twice a polygon's area, along its normal.
+Eigen::Vector3d area_of(const std::vector<std::uint32_t>& polygon,
+                        const std::vector<Eigen::Vector3d>& points) {
+    Eigen::Vector3d area = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d& first = points[polygon[0]];
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        area += (points[polygon[i - 1]] - first).cross(points[polygon[i]] - first);
+    return area;
+}
+
 }  // namespace
 
 QhullFacets qhull_facets(const std::vector<Vec4>& points) {
@@ -60,6 +72,31 @@ QhullFacets qhull_facets(const std::vector<Vec4>& points) {
     for (std::size_t i = 0; i < points.size(); ++i)
         if (is_vertex[i]) facets.vertices.push_back(i);
     return facets;
+}
+
+std::vector<std::vector<std::uint32_t>> qhull_polygons(std::vector<Eigen::Vector3d> points) {
+    std::vector<std::vector<std::uint32_t>> polygons;
+    if (points.size() < 4) return polygons;
+    Qhull qhull;
+    qhT* qh = &qhull.state;
+    char command[] = "qhull Pp";
+    if (qh_new_qhull(qh, 3, static_cast<int>(points.size()), points[0].data(), False, command,
+                     qhull.nowhere.get(), qhull.nowhere.get()) != 0)
+        return polygons;
+    facetT* facet;
+    FORALLfacets {
+        std::vector<std::uint32_t> polygon;
+        setT* corners = qh_facet3vertex(qh, facet);
+        vertexT *vertex, **vertexp;
+        FOREACHvertex_(corners)
+            polygon.push_back(static_cast<std::uint32_t>(qh_pointid(qh, vertex->point)));
+        qh_settempfree(qh, &corners);
+        // Which way round depends on how Qhull was built.
+        if (area_of(polygon, points).dot(Eigen::Map<const Eigen::Vector3d>(facet->normal)) < 0)
+            std::reverse(polygon.begin(), polygon.end());
+        polygons.push_back(std::move(polygon));
+    }
+    return polygons;
 }
 
 }  // namespace tesserae

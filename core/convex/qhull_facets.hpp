@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/convex/hull.hpp"
@@ -15,5 +16,10 @@ struct QhullFacets {
 };
 
 QhullFacets qhull_facets(const std::vector<Vec4>& points);
+
+/// The convex hull of points in three dimensions: its polygons, by their corners' places among the
+/// points, counter-clockwise seen from outside. Points that are in one plane to rounding make one
+/// polygon. Empty where all points are in one plane, to rounding.
+std::vector<std::vector<std::uint32_t>> qhull_polygons(std::vector<Eigen::Vector3d> points);
 
 }  // namespace tesserae

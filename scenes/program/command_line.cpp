@@ -105,6 +105,38 @@ void add_compare(CLI::App& app, CommandLine& line) {
         ->expected(2);
 }
 
+void add_tools(CLI::App& app, CommandLine& line) {
+    CLI::App& plot = *app.add_subcommand(
+        "plot", "energies, momenta, contacts, overlap and residual over time, by gnuplot");
+    add_common(plot, line);
+    plot.add_option("file", line.file, "trajectory (HDF5)")->required();
+    add_output(plot, line, "the picture: FILE.svg or FILE.png");
+
+    CLI::App& exported = *app.add_subcommand(
+        "export", "the slice's bodies as meshes, a frame a file, for other programs");
+    add_common(exported, line);
+    exported.add_option("file", line.file, "trajectory (HDF5)")->required();
+    exported
+        .add_option("--set", line.sets,
+                    "one key of the trajectory's scene, for example camera.position=[0,2,-8,0.5]")
+        ->allow_extra_args(false);
+    exported.add_option("--format", line.format, "ply, or vtk (ParaView opens NAME.pvd)")
+        ->required()
+        ->check(CLI::IsMember({"ply", "vtk"}));
+    add_output(exported, line, "folder for the meshes and the camera's path");
+    exported.add_option("--frames", line.frames, "for example 0-239x2,300 (default: all)");
+    exported
+        .add_option("--tolerance", line.tolerance,
+                    "how far a round body's mesh may be from its surface [m] (default: a "
+                    "thousandth of its diameter)")
+        ->check(CLI::PositiveNumber);
+    exported
+        .add_option("--extent", line.extent,
+                    "where planes end: half the side of a cube about the first frame's camera [m] "
+                    "(default: over a thousand times as far as any body at the start)")
+        ->check(CLI::PositiveNumber);
+}
+
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.
 void append_overrides(const CLI::App& app, const Typed& typed, std::vector<std::string>& sets) {
     const auto given = [&](const char* name) {
@@ -190,6 +222,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     info.add_option("file", line.file, "a .toml, .h5 or .exr file")->required();
 
     add_compare(app, line);
+    add_tools(app, line);
 
     CLI::App& generate =
         *app.add_subcommand("generate", "a many-body scene, as TOML on standard output");

@@ -18,6 +18,7 @@
 #include "scenes/program/compare_commands.hpp"
 #include "scenes/program/film_commands.hpp"
 #include "scenes/program/info.hpp"
+#include "scenes/program/tool_commands.hpp"
 #include "scenes/program/work.hpp"
 #include "scenes/timeline.hpp"
 
@@ -152,6 +153,8 @@ int execute(const CommandLine& line) {
     if (line.command == "info") info_command(line);
     if (line.command == "hash") hash_command(line);
     if (line.command == "diff") status = diff_command(line);
+    if (line.command == "plot") plot_command(line);
+    if (line.command == "export") export_command(line);
     if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw RunError("standard output: cannot be written");

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scenes/program/command_line.hpp"
+
+namespace tesserae::scenes {
+
+/// `tesserae plot`.
+void plot_command(const CommandLine& line);
+
+/// `tesserae export`.
+void export_command(const CommandLine& line);
+
+}  // namespace tesserae::scenes
