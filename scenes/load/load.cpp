@@ -36,10 +36,15 @@ void load_physics(TableReader& root, const Origin& origin, Scene& scene, Effecti
 }
 
 Scene load_scene(const std::filesystem::path& file, std::span<const std::string> sets) {
+    return load_scene_text(file, read_scene_file(file), sets);
+}
+
+Scene load_scene_text(const std::filesystem::path& file, std::string source,
+                      std::span<const std::string> sets) {
     Overrides overrides(sets);
     Scene scene;
     scene.file = file;
-    scene.source = read_scene_file(file);
+    scene.source = std::move(source);
     const Origin origin{printable(file.string(), 400)};
     const SceneText text = cut_scene_text(scene.source, origin.place);
     TomlDocument document(text.rest, origin);

@@ -21,4 +21,9 @@ namespace tesserae::scenes {
 /// BodyType; types are numbered as they are first met.
 Scene load_scene(const std::filesystem::path& file, std::span<const std::string> sets);
 
+/// The same of a text that was read already, for example from a trajectory.
+/// @param file   it was read from: names it in errors
+Scene load_scene_text(const std::filesystem::path& file, std::string text,
+                      std::span<const std::string> sets);
+
 }  // namespace tesserae::scenes

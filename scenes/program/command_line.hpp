@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct CommandLine {
     std::string frames;
     std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
     std::string generator;
-    std::uint64_t bodies = 0;  ///< to generate
+    std::uint64_t bodies = 0;          ///< to generate
+    std::optional<double> near_slice;  ///< of view [m]
     int threads = 0;
     bool quiet = false, json = false, overwrite = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.

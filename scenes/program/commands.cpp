@@ -10,6 +10,7 @@
 #include "core/file/file_writer.hpp"
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
+#include "scenes/compare/file_kind.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/film/simulate.hpp"
 #include "scenes/generate/generate.hpp"
@@ -21,6 +22,8 @@
 #include "scenes/program/compare_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/timeline.hpp"
+#include "scenes/trajectory/trajectory.hpp"
+#include "scenes/view/view.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -79,8 +82,9 @@ void print_plan(const Plan& plan) {
 
 /// What commands on a scene share: the checked scene, its plan, and the threads to work on.
 struct Work {
-    explicit Work(const CommandLine& line)
-        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {}
+    explicit Work(const CommandLine& line) : Work(load_scene(line.file, line.sets), line) {}
+    Work(Scene of, const CommandLine& line)
+        : scene(std::move(of)), plan(make_plan(scene, line.threads)) {}
 
     Scene scene;
     Plan plan;
@@ -160,6 +164,41 @@ void film_command(const CommandLine& line) {
     print_result(line, json, filmed_text(filmed));
 }
 
+/// The scene that `view` shows: that of a scene file, or the one in a trajectory.
+Scene viewed_scene(const CommandLine& line) {
+    if (kind_of(line.file) != FileKind::kTrajectory) return load_scene(line.file, line.sets);
+    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
+}
+
+void view_command(const CommandLine& line) {
+    const Work work(viewed_scene(line), line);
+    const Scene& scene = work.scene;
+    require_page_of(scene, line.output, line.overwrite);
+    require_memory(work.plan, scene);
+    stop_gracefully_on_signals();
+
+    const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
+    fs::path trajectory = is_trajectory ? line.file : fs::path();
+    Json json = {{"scene", scene.name}, {"hash", scene.hash}};
+    ViewReport report;
+    parallel::Threads(line.threads).run([&] {
+        if (!is_trajectory && work.plan.moves) {
+            trajectory = fs::path(line.output).replace_extension(".h5");
+            json["simulate"] = to_json(traced_simulate(line, work, trajectory));
+            json["simulate"]["trajectory"] = trajectory.string();
+        }
+        report = write_view(scene, trajectory, line.output, line.near_slice, line.quiet);
+    });
+    json["page"] = line.output.string();
+    json["bodies"] = report.bodies, json["moments"] = report.moments;
+    json["bytes"] = report.bytes, json["seconds"] = report.seconds;
+    print_result(
+        line, json,
+        fmt::format("{}: {} bodies, {} moments, {:.1f} MB, {}", line.output.string(), report.bodies,
+                    report.moments, 1e-6 * static_cast<double>(report.bytes),
+                    duration_text(report.seconds)));
+}
+
 void plan_command(const CommandLine& line) {
     Work work(line);
     count_off_slice(work.scene, work.plan);
@@ -198,6 +237,7 @@ int execute(const CommandLine& line) {
     int status = 0;
     if (line.command == "simulate") simulate_command(line);
     if (line.command == "run" || line.command == "render") film_command(line);
+    if (line.command == "view") view_command(line);
     if (line.command == "plan") plan_command(line);
     if (line.command == "info") info_command(line);
     if (line.command == "hash") hash_command(line);
