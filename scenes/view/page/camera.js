@@ -30,7 +30,8 @@ class View {
     this.axes = axes;
     this.pivot = c.look_at.slice();
     this.distance = norm(minus(c.look_at, c.position));
-    this.upright = axes.up;  // what orbiting turns about
+    // What orbiting turns about: the scene's up, which the camera may look down along.
+    this.upright = orthogonalPart(c.up, axes.fourth) || axes.up;
     this.fieldOfView = c.field_of_view;
     this.shift = 0;               // of the slice along its fourth axis [m]
     this.angles = [0, 0, 0];      // xw, yw, zw [rad]
