@@ -180,6 +180,9 @@ void view_command(const CommandLine& line) {
     const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
     fs::path trajectory = is_trajectory ? line.file : fs::path();
     Json json = {{"scene", scene.name}, {"hash", scene.hash}};
+    ViewOptions options;
+    options.near_slice = line.near_slice;
+    options.quiet = line.quiet;
     ViewReport report;
     parallel::Threads(line.threads).run([&] {
         if (!is_trajectory && work.plan.moves) {
@@ -187,7 +190,7 @@ void view_command(const CommandLine& line) {
             json["simulate"] = to_json(traced_simulate(line, work, trajectory));
             json["simulate"]["trajectory"] = trajectory.string();
         }
-        report = write_view(scene, trajectory, line.output, line.near_slice, line.quiet);
+        report = write_view(scene, trajectory, line.output, options);
     });
     json["page"] = line.output.string();
     json["bodies"] = report.bodies, json["moments"] = report.moments;

@@ -73,16 +73,16 @@ class ViewPoses {
 };
 
 void require_room(const Scene& scene, const PoseRanges& ranges, std::size_t moments,
-                  std::optional<double> near_slice) {
+                  const ViewOptions& options) {
     const std::uint64_t bytes = PosePacker::bytes_of(ranges, moments);
     const std::string what =
         fmt::format("{}: {} bodies at {} moments would take {} MB", scene.file.string(),
                     ranges.tracks().size(), moments, bytes / 1'000'000);
-    if (bytes > kMostPoseBytes)
+    if (bytes > options.most_pose_bytes)
         throw InputError(fmt::format(
             "{}, a page holds {} MB: leave out what is never {} the film's slice with --near-slice "
             "METRES, or frames with --set render.frames_per_second=N",
-            what, kMostPoseBytes / 1'000'000, near_slice ? "as near" : "near"));
+            what, options.most_pose_bytes / 1'000'000, options.near_slice ? "as near" : "near"));
     // The bits, their bytes, the page.
     if (4 * bytes > available_memory())
         throw InputError(
@@ -107,11 +107,11 @@ void require_page_of(const Scene& scene, const fs::path& file, bool overwrite) {
 }
 
 ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::path& file,
-                      std::optional<double> near_slice, bool quiet) {
+                      const ViewOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     ViewPoses poses(scene, trajectory);
     const std::vector<ViewMoment>& moments = poses.moments();
-    Progress progress("packing", "moments", 2 * moments.size(), quiet);
+    Progress progress("packing", "moments", 2 * moments.size(), options.quiet);
     std::uint64_t done = 0;
     const auto for_each_moment = [&](auto&& use) {
         for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -125,12 +125,12 @@ ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::
     for_each_moment([&](const Bodies& bodies, const ViewMoment& moment) {
         ranges.add(bodies, render::Camera(moment.camera, scene.render.width, scene.render.height));
     });
-    if (near_slice) ranges.keep_near_slice(*near_slice);
-    require_room(scene, ranges, moments.size(), near_slice);
+    if (options.near_slice) ranges.keep_near_slice(*options.near_slice);
+    require_room(scene, ranges, moments.size(), options);
 
     PosePacker packer(ranges, moments.size());
     for_each_moment([&](const Bodies& bodies, const ViewMoment&) { packer.add(bodies); });
-    const std::string page = page_text(scene.hash, page_scene(scene, moments, near_slice),
+    const std::string page = page_text(scene.hash, page_scene(scene, moments, options.near_slice),
                                        packer.take_bytes(scene.bodies));
     write_file(file, page);
 

@@ -20,6 +20,13 @@ struct ViewReport {
 /// times as much memory.
 constexpr std::uint64_t kMostPoseBytes = 192'000'000;
 
+struct ViewOptions {
+    /// Leaves out bodies that never come as near as this to the film's slice [m].
+    std::optional<double> near_slice;
+    std::uint64_t most_pose_bytes = kMostPoseBytes;
+    bool quiet = false;
+};
+
 /// Checks that `file` may be written: it ends in .html, and there is nothing, or a page of this
 /// scene.
 /// @throws InputError   else, unless `overwrite`
@@ -28,12 +35,10 @@ void require_page_of(const Scene& scene, const std::filesystem::path& file, bool
 /// Writes one self-contained page that shows a scene's slice at any moment: the film's frames, or
 /// where the trajectory does not have the steps for them the steps that it stores.
 /// @param trajectory   empty: of a scene that stands still
-/// @param near_slice   leaves out bodies that never come as near as this to the film's slice [m]
 /// @throws InputError  the trajectory is of another motion; more than a page can hold
 /// @throws RunError    the file cannot be written
 /// @throws Stopped     after a signal
 ViewReport write_view(const Scene& scene, const std::filesystem::path& trajectory,
-                      const std::filesystem::path& file, std::optional<double> near_slice,
-                      bool quiet);
+                      const std::filesystem::path& file, const ViewOptions& options);
 
 }  // namespace tesserae::scenes

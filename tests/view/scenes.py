@@ -69,3 +69,45 @@ def one_120_cell():
 # The slice turned out of w, so that all of its axes have a part of all others.
 TURNED = "fourth = [0.3, -0.2, 0.15, 0.9]\nup = [0.1, 1, 0, 0.2]\nfield_of_view = 47"
 FAR = (1000.0, -1000.0, 1000.0, 1000.0)
+
+HOSTILE = "</script><script>window.hit = 1</script><img src=x onerror='window.hit=1'>\n[camera]"
+
+
+def hostile():
+    """A ball whose name would be markup, a script and TOML if it were not text."""
+    name = HOSTILE.replace("\n", "\\n")
+    return (camera((0, 0, -5, 0), (0, 0, 0, 0)) + LIGHT +
+            f'[[body]]\nname = "{name}"\nshape = "hypersphere"\nradius = 1\n')
+
+
+def crossing():
+    """A ball of radius 1 that goes through the slice along w: in it from 1 s to 3 s. A moving
+    camera."""
+    return """
+[physics]
+duration = 4
+gravity = [0, 0, 0, 0]
+[render]
+frames_per_second = 10
+[camera]
+look_at = [0, 0, 0, 0]
+[[camera.key]]
+time = 0
+position = [0, 1, -6, 0]
+[[camera.key]]
+time = 4
+position = [4, 2, -4, 0]
+""" + LIGHT + """
+[[body]]
+name = "crosser"
+shape = "hypersphere"
+radius = 1
+position = [0, 0, 0, -2]
+velocity = [0, 0, 0, 1]
+[[body]]
+name = "stays"
+shape = "hyperbox"
+size = [1, 1, 1, 1]
+position = [2.7, 0, 0, 0]
+angular_velocity = { xw = 1, yz = 2 }
+"""
