@@ -49,6 +49,7 @@ class Page {
     range.addEventListener("input", () => this.goTo(Number(range.value)));
     byId("play").addEventListener("click", () => this.togglePlay());
     const rows = byId("rows");
+    byId("rows-box").addEventListener("scroll", () => this.drawTime());
     let isDown = false;
     const go = (event) => isDown && event.offsetX >= kLabelWidth && this.goTo(this.timeline.timeAt(event.offsetX));
     rows.addEventListener("pointerdown", (event) => {
@@ -175,7 +176,8 @@ class Page {
     const shown = this.view.shown();
     const film = filmCamera(this.scene, this.poses, this.time);
     this.overlay.draw(shown, layout, {showsFrame: this.showsFrame, showsPath: this.showsPath, film});
-    this.timeline.follow((moment) => this.sliceAt(moment), JSON.stringify(this.follows ? "film" : [shown.position, shown.fourth]));
+    const slices = JSON.stringify(this.follows ? "film" : [shown.position, shown.fourth]);
+    this.timeline.follow((moment) => this.sliceAt(moment), slices);
     this.panel.update();
     this.drawTime();
   }
@@ -192,8 +194,11 @@ class Page {
     byId("moment").value = this.time;
     byId("play").textContent = this.isPlaying ? "\u275a\u275a" : "\u25b6";
     say("clock", `${this.time.toFixed(3)} s\n${first} of ${times.length}`);
-    const {chosen} = this.options, width = byId("rows-box").clientWidth;
-    this.timeline.draw(width, Math.min(devicePixelRatio, 2), this.time, chosen < 0 ? -1 : this.poses.id[chosen]);
+    const {chosen} = this.options, box = byId("rows-box"), {timeline} = this;
+    byId("rows-height").style.height = `${timeline.height}px`;
+    const view = {width: box.clientWidth, height: Math.min(box.clientHeight, timeline.height),
+                  scrolled: box.scrollTop, ratio: Math.min(devicePixelRatio, 2)};
+    timeline.draw(view, this.time, chosen < 0 ? -1 : this.poses.id[chosen]);
   }
 
   draw() {
@@ -229,13 +234,15 @@ class Page {
 
   showAll() {
     this.leaveFilm();
-    const {view, poses, scene} = this, shown = view.shown(), low = [1e300, 1e300, 1e300], high = [-1e300, -1e300, -1e300];
+    const {view, poses, scene} = this, shown = view.shown();
+    const low = [1e300, 1e300, 1e300], high = [-1e300, -1e300, -1e300];
     for (let body = 0; body < poses.count; ++body) {
       const type = scene.types[poses.type[body]];
       if (type.kind === "plane") continue;
       const from = minus([...poses.position.subarray(4 * body, 4 * body + 4)], shown.pivot);
       [shown.right, shown.up, shown.forward].forEach((axis, i) => {
-        low[i] = Math.min(low[i], dot(axis, from) - type.bound), high[i] = Math.max(high[i], dot(axis, from) + type.bound);
+        low[i] = Math.min(low[i], dot(axis, from) - type.bound);
+        high[i] = Math.max(high[i], dot(axis, from) + type.bound);
       });
     }
     if (!(low[0] <= high[0])) return;
@@ -257,8 +264,15 @@ function interfaceOf(page) {
   const idOf = (seen) => (seen === 0 ? 0 : page.poses.id[seen - 1] + 1);
   return {
     page,
-    time: (t) => page.setTime(t),
-    camera: (camera) => page.view.look(camera),
+    time: (t) => {
+      page.setTime(t);
+      page.changed();
+    },
+    camera: (camera) => {
+      page.view.look(camera);
+      page.leaveFilm();
+      page.changed();
+    },
     size: (width, height) => {
       page.isFixed = true;
       page.canvas.style.width = `${width}px`, page.canvas.style.height = `${height}px`;
@@ -282,8 +296,7 @@ window.tesserae.ready = new Promise((resolve) => {
     Object.assign(window.tesserae, interfaceOf(page));
     resolve();
   } catch (error) {
-    byId("failure").hidden = false;
-    say("failure", `This page cannot be shown: ${error.message}`);
+    fail(error.message);
     throw error;
   }
 });

@@ -57,7 +57,8 @@ class Navigation {
   }
 
   keyDown(event) {
-    if (["INPUT", "TEXTAREA"].includes(event.target.tagName) && event.target.type !== "range" && event.target.type !== "checkbox") return;
+    const {tagName, type} = event.target;
+    if (tagName === "TEXTAREA" || (tagName === "INPUT" && type === "number")) return;
     if (event.ctrlKey && !event.code.startsWith("Digit") && !event.code.startsWith("Numpad")) return;
     this.pressed.add(event.code);
     const act = this.action(event);

@@ -63,7 +63,8 @@ class Overlay {
     pen.fillStyle = "#ffb347";
     for (const time of key_times) {
       const next = moments.findIndex((t) => t >= time - 1e-9);
-      const at = this.project(cameras[Math.min(cameras.length - 1, next < 0 ? cameras.length - 1 : next)].position);
+      const moment = next < 0 ? cameras.length - 1 : Math.min(cameras.length - 1, next);
+      const at = this.project(cameras[moment].position);
       if (!at) continue;
       pen.beginPath();
       pen.arc(at.x, at.y, 4, 0, 7);
@@ -78,7 +79,8 @@ class Overlay {
     const size = 0.12 * norm(minus(film.look_at, film.position));
     const up = Math.tan((film.field_of_view * Math.PI) / 360) * size;
     const right = (up * this.scene.size[0]) / this.scene.size[1];
-    const corner = (x, y) => along(along(along(film.position, size, axes.forward), x * right, axes.right), y * up, axes.up);
+    const middle = along(film.position, size, axes.forward);
+    const corner = (x, y) => along(along(middle, x * right, axes.right), y * up, axes.up);
     const corners = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
     pen.strokeStyle = "#ffd9a0";
     corners.forEach((c, i) => {

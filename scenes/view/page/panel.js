@@ -5,6 +5,14 @@
 const byId = (id) => document.getElementById(id);
 const say = (id, text) => (byId(id).textContent = text);
 
+const kTurns = ["xw", "yw", "zw"];
+
+/// Says over the picture why there is none.
+function fail(why) {
+  byId("failure").hidden = false;
+  say("failure", `This page cannot be shown: ${why}.`);
+}
+
 /// A slider with a number beside it; a double click sets it back.
 class Slider {
   constructor(name, low, high, start, onInput) {
@@ -44,13 +52,18 @@ class Panel {
       change(value);
       page.changed();
     };
+    const moved = (change) => changed((value) => {
+      page.leaveFilm();
+      change(value);
+    });
+    const ghosts = (depth) => this.setGhosts(byId("ghosts").checked, depth);
     this.sliders = {
-      w: new Slider("w", -reach, reach, 0, changed((v) => (page.leaveFilm(), (view.shift = v)))),
-      fov: new Slider("fov", 1, 150, view.fieldOfView, changed((v) => (page.leaveFilm(), (view.fieldOfView = clamp(v, 0.01, 179))))),
-      ghost: new Slider("ghost", 0, reach, 0.25 * reach, changed((v) => this.setGhosts(byId("ghosts").checked, v))),
+      w: new Slider("w", -reach, reach, 0, moved((v) => (view.shift = v))),
+      fov: new Slider("fov", 1, 150, view.fieldOfView, moved((v) => (view.fieldOfView = clamp(v, 0.01, 179)))),
+      ghost: new Slider("ghost", 0, reach, 0.25 * reach, changed(ghosts)),
     };
-    ["xw", "yw", "zw"].forEach((name, i) => {
-      this.sliders[name] = new Slider(name, -180, 180, 0, changed((v) => (page.leaveFilm(), (view.angles[i] = v * degrees))));
+    kTurns.forEach((name, i) => {
+      this.sliders[name] = new Slider(name, -180, 180, 0, moved((v) => (view.angles[i] = v * degrees)));
     });
     const check = (id, change) => byId(id).addEventListener("change", changed(() => change(byId(id).checked)));
     check("shadows", (on) => (options.shadows = on));
@@ -61,7 +74,7 @@ class Panel {
     byId("reset-slice").addEventListener("click", changed(() => page.resetSlice()));
     byId("copy-camera").addEventListener("click", () => this.copy(cameraToml(view.description()), "[camera] copied"));
     byId("copy-key").addEventListener("click", () =>
-      this.copy(cameraKeyToml(view.description(), page.time), `[[camera.key]] copied, for ${page.time.toFixed(3)} s`));
+      this.copy(cameraKeyToml(view.description(), page.time), `[[camera.key]] of ${page.time.toFixed(3)} s copied`));
     say("scene-name", page.scene.name);
     document.title = `${page.scene.name} - tesserae`;
   }
@@ -91,25 +104,38 @@ class Panel {
     const {page, sliders} = this, {view, scene} = page, degrees = Math.PI / 180;
     sliders.w.set(view.shift);
     sliders.fov.set(view.fieldOfView);
-    ["xw", "yw", "zw"].forEach((name, i) => sliders[name].set(view.angles[i] / degrees));
+    kTurns.forEach((name, i) => sliders[name].set(view.angles[i] / degrees));
     byId("follow").checked = page.follows;
     const {placed} = page.renderer, cut = placed.order.filter((body) => placed.state[body] === kSolid).length;
-    const left = scene.near_slice === undefined ? "" : `, without those never within ${scene.near_slice} m of the film's slice`;
+    const left = scene.near_slice === undefined ? ""
+      : `; of ${scene.bodies}, those that come within ${scene.near_slice} m of the film's slice`;
     say("facts", `${cut} of ${page.poses.count} bodies in view${left}`);
     this.updateBody();
   }
 
   updateBody() {
-    const {page} = this, body = page.options.chosen, list = (v) => v.map((n) => n.toFixed(3)).join(", ");
+    const {page} = this, body = page.options.chosen;
     byId("body").hidden = body < 0;
     if (body < 0) return;
     const {poses, scene} = page, type = scene.types[poses.type[body]], isPlane = type.kind === "plane";
-    const velocity = poses.velocity(body, page.time);
-    const offset = page.renderer.placed.offset[body];
+    // As many digits as are stored.
+    const list = (v, accuracy) => {
+      const digits = clamp(Math.ceil(-Math.log10(accuracy)), 0, 6);
+      return v.map((n) => n.toFixed(digits)).join(", ");
+    };
+    const step = poses.steps[2 * body] || 1e-3, moments = scene.times;
+    const between = moments.length > 1 ? moments[1] - moments[0] : 1;
     say("body-name", page.nameOf(body));
     say("body-shape", type.shape);
-    say("body-position", isPlane ? `${list(type.normal)} · p = ${type.offset.toFixed(3)}` : `${list([...poses.position.subarray(4 * body, 4 * body + 4)])} m`);
-    say("body-velocity", isPlane ? "at rest" : `${list(velocity)} m/s (${norm(velocity).toFixed(3)})`);
-    say("body-offset", isPlane ? "everywhere" : `${offset.toFixed(3)} m`);
+    if (isPlane) {
+      say("body-position", `${list(type.normal, 1e-3)} · p = ${type.offset.toFixed(3)} m`);
+      say("body-velocity", "at rest");
+      say("body-offset", "everywhere");
+      return;
+    }
+    const position = [...poses.position.subarray(4 * body, 4 * body + 4)];
+    say("body-position", `${list(position, step)} m`);
+    say("body-velocity", `${list(poses.velocity(body, page.time), step / between)} m/s`);
+    say("body-offset", `${list([page.renderer.placed.offset[body]], step)} m`);
   }
 }

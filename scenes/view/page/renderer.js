@@ -10,6 +10,8 @@ class Renderer {
   constructor(canvas, scene, poses) {
     const gl = canvas.getContext("webgl2", {antialias: false, alpha: false, preserveDrawingBuffer: true});
     if (!gl) throw new Error("this browser has no WebGL 2");
+    canvas.addEventListener("webglcontextlost", () =>
+      fail("the graphics card was taken away; load the page again"));
     this.gl = gl;
     this.scene = scene;
     this.poses = poses;
@@ -152,7 +154,8 @@ class Renderer {
   }
 
   setLights(camera, {shadows, chosen}) {
-    const gl = this.gl, {lights, exposure} = this.scene, axes = [camera.right, camera.up, camera.forward, camera.fourth];
+    const gl = this.gl, {lights, exposure} = this.scene;
+    const axes = [camera.right, camera.up, camera.forward, camera.fourth];
     const inCamera = (v) => axes.map((a) => dot(a, v));
     const {grids} = this;
     grids.suns.forEach((sun, i) => {
@@ -163,7 +166,8 @@ class Renderer {
       // Columns: where the camera's axes lead in the grid.
       const map = [0, 1, 2].flatMap((k) => grid.across.map((e) => dot(e, axes[k]) / grid.cell));
       gl.uniformMatrix3fv(this.place(`sun_map[${i}]`), false, map);
-      gl.uniform3fv(this.place(`sun_origin[${i}]`), grid.across.map((e, k) => (dot(e, from) - grid.low[k]) / grid.cell));
+      const origin = grid.across.map((e, k) => (dot(e, from) - grid.low[k]) / grid.cell);
+      gl.uniform3fv(this.place(`sun_origin[${i}]`), origin);
       gl.uniform3i(this.place(`sun_size[${i}]`), ...grid.size);
       gl.uniform3i(this.place(`sun_places[${i}]`), grid.firstCell, grid.firstLarge, grid.large);
     });
@@ -179,7 +183,8 @@ class Renderer {
 
   /// Of each pixel of the last picture, from the top left: number of the body in the page + 1, or 0.
   seenBodies(x = 0, y = 0, width = this.width, height = this.height) {
-    const gl = this.gl, texels = new Uint32Array(4 * width * height), seen = new Uint32Array(width * height);
+    const gl = this.gl, texels = new Uint32Array(4 * width * height);
+    const seen = new Uint32Array(width * height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     gl.readPixels(x, this.height - y - height, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);

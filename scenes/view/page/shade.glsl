@@ -87,6 +87,14 @@ vec3 from_lamp(int lamp, vec4 point, vec4 normal) {
 }
 #endif
 
+#if LAMPS > 0
+// Where a view ray meets a lamp that is a ball, or kFar.
+float lamp_distance(int lamp, vec3 direction) {
+    vec2 part = in_ball(-lamp_place[lamp], vec4(direction, 0), lamp_power[lamp].w);
+    return part.x <= part.y && part.y > 0.0 ? max(0.0, part.x) : kFar;
+}
+#endif
+
 struct Lit {
     vec3 light;
     float facing;  // cosine between the ray and the surface's normal in the slice
@@ -171,9 +179,16 @@ void main() {
     float t = uintBitsToFloat(seen.y);
     vec3 light = sky;
     if (seen.x != 0u) light = light_of(seen.x - 1u, t, direction, true).light;
+    if (seen.x == 0u) t = kFar;
+#if LAMPS > 0
+    for (int i = 0; i < LAMPS; ++i) {
+        float own = lamp_power[i].w > 0.0 ? lamp_distance(i, direction) : kFar;
+        if (own < t) t = own, light = lamp_power[i].rgb;
+    }
+#endif
 #ifdef GHOSTS
     uvec4 tile = texelFetch(tiles, at / tile_size, 0);
-    light = with_ghosts(light, tile, direction, seen.x == 0u ? kFar : t);
+    light = with_ghosts(light, tile, direction, t);
 #endif
     color = vec4(srgb(gain * light), 1);
 #ifdef OUTLINE

@@ -11,7 +11,8 @@ class SunGrids {
   constructor(scene, poses) {
     this.scene = scene;
     this.poses = poses;
-    this.suns = scene.lights.suns.slice(0, kMostSuns);
+    const brightness = (sun) => Math.max(...sun.irradiance);
+    this.suns = [...scene.lights.suns].sort((a, b) => brightness(b) - brightness(a)).slice(0, kMostSuns);
     this.frames = this.suns.map((sun) => {
       const across = [];
       for (const axis of [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {

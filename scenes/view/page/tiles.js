@@ -1,16 +1,27 @@
 "use strict";
 // For each tile of the picture the bodies that may be seen in it, the nearest first.
 
+const kMostEntries = 2e6;
+const kLargestTile = 256;  // [pixels]
+
 class Tiles {
-  /// @param film   width, height and tile [pixels]; pixel: side of one at distance 1
+  /// @param film   width, height and tile [pixels]; pixel: side of one at distance 1. Its tiles are
+  ///               made larger where the lists would be too long.
   build(placed, film) {
+    while (!this.tryToBuild(placed, film)) film.tile *= 2;
+  }
+
+  tryToBuild(placed, film) {
     const columns = Math.ceil(film.width / film.tile), rows = Math.ceil(film.height / film.tile);
     const {order, state} = placed, rectangles = new Int16Array(4 * order.length);
+    let touched = 0;
     const counts = [new Uint32Array(columns * rows), new Uint32Array(columns * rows)];
     for (let i = 0; i < order.length; ++i) {
       const rectangle = this.rectangle(placed.slopes(order[i]), film, columns, rows);
       rectangles.set(rectangle, 4 * i);
       const count = counts[state[order[i]] - 1], [x0, x1, y0, y1] = rectangle;
+      touched += Math.max(0, x1 - x0 + 1) * Math.max(0, y1 - y0 + 1);
+      if (touched > kMostEntries && film.tile < kLargestTile) return false;
       for (let y = y0; y <= y1; ++y) for (let x = x0; x <= x1; ++x) ++count[y * columns + x];
     }
 
@@ -36,6 +47,7 @@ class Tiles {
           this.list[entry + 1] = bits[0];
         }
     }
+    return true;
   }
 
   /// The tiles [x0, x1, y0, y1] that a rectangle of slopes touches, from the bottom left.

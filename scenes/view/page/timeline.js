@@ -31,6 +31,10 @@ class Timeline {
     this.done = 0;
   }
 
+  get height() {
+    return kRowHeight * this.rows.length;
+  }
+
   /// Goes on finding out for a short time. True when there was something to do.
   work() {
     const {scene, poses} = this, moments = scene.times.length, end = performance.now() + kSlot;
@@ -57,32 +61,40 @@ class Timeline {
     return isCut(scene, type, turned, 0, -offset);
   }
 
-  draw(width, ratio, time, chosenId) {
-    const {canvas, scene, rows} = this, pen = canvas.getContext("2d"), height = kRowHeight * rows.length;
+  /// @param view   width, height [CSS pixels] and scrolled: how many pixels of rows are above
+  draw({width, height, scrolled, ratio}, time, chosenId) {
+    const {canvas, scene, rows} = this, pen = canvas.getContext("2d");
     canvas.width = Math.round(width * ratio), canvas.height = Math.max(1, Math.round(height * ratio));
     canvas.style.width = `${width}px`, canvas.style.height = `${height}px`;
     pen.scale(ratio, ratio);
-    this.width = width;
-    const times = scene.times, step = this.x(times[1]) - this.x(times[0]) || width;
     pen.font = "11px system-ui, sans-serif";
     pen.textBaseline = "middle";
-    rows.forEach((row, i) => {
-      const y = i * kRowHeight, isChosen = chosenId >= row.first && chosenId < row.first + row.count;
-      pen.fillStyle = isChosen ? "#3a3026" : i % 2 ? "#262629" : "#232326";
-      pen.fillRect(0, y, width, kRowHeight);
-      pen.fillStyle = isChosen ? "#ff9a4d" : "#b9b9be";
-      pen.fillText(row.count > 1 ? `${row.name} (${row.bodies.length})` : row.name, 10, y + kRowHeight / 2, kLabelWidth - 16);
-      pen.fillStyle = isChosen ? "#ff8a33" : "#4b8fe2";
-      for (let k = 0; k < this.done; ++k) {
-        if (this.parts[i][k] === 0) continue;
-        pen.globalAlpha = 0.25 + 0.75 * this.parts[i][k];
-        const from = Math.round(this.x(times[k])), to = Math.round(this.x(times[k]) + step);
-        pen.fillRect(from, y + 4, Math.max(1, to - from), kRowHeight - 8);
-      }
-      pen.globalAlpha = 1;
-    });
+    this.width = width;
+    this.scrolled = scrolled;
+    const first = Math.floor(scrolled / kRowHeight);
+    for (let i = first; i < rows.length && i * kRowHeight < scrolled + height; ++i) {
+      const row = rows[i], isChosen = chosenId >= row.first && chosenId < row.first + row.count;
+      this.drawRow(pen, i, i * kRowHeight - scrolled, isChosen);
+    }
     pen.fillStyle = "#fff";
     pen.fillRect(this.x(time) - 0.5, 0, 1.5, height);
+  }
+
+  drawRow(pen, i, y, isChosen) {
+    const {times} = this.scene, row = this.rows[i], step = this.x(times[1]) - this.x(times[0]) || this.width;
+    pen.fillStyle = isChosen ? "#3a3026" : i % 2 ? "#262629" : "#232326";
+    pen.fillRect(0, y, this.width, kRowHeight);
+    pen.fillStyle = isChosen ? "#ff9a4d" : "#b9b9be";
+    const label = row.count > 1 ? `${row.name} (${row.bodies.length})` : row.name;
+    pen.fillText(label, 10, y + kRowHeight / 2, kLabelWidth - 16);
+    pen.fillStyle = isChosen ? "#ff8a33" : "#4b8fe2";
+    for (let k = 0; k < this.done; ++k) {
+      if (this.parts[i][k] === 0) continue;
+      pen.globalAlpha = 0.25 + 0.75 * this.parts[i][k];
+      const from = Math.round(this.x(times[k])), to = Math.round(this.x(times[k]) + step);
+      pen.fillRect(from, y + 4, Math.max(1, to - from), kRowHeight - 8);
+    }
+    pen.globalAlpha = 1;
   }
 
   x(time) {
@@ -95,7 +107,8 @@ class Timeline {
     return times[0] + clamp((x - kLabelWidth) / (this.width - kLabelWidth - 14), 0, 1) * span;
   }
 
+  /// The row at a height of the canvas, if there is one.
   rowAt(y) {
-    return this.rows[Math.floor(y / kRowHeight)];
+    return this.rows[Math.floor((y + this.scrolled) / kRowHeight)];
   }
 }
