@@ -13,9 +13,6 @@ function axesOf({position, look_at, up, fourth}) {
   return {right: completingAxis(upward, forward, across), up: upward, forward, fourth: across};
 }
 
-const kCameraDefaults = {position: [0, 2, -8, 0], look_at: [0, 0, 0, 0], up: [0, 1, 0, 0],
-                         fourth: [0, 0, 0, 1], field_of_view: 50};
-
 /// What the page looks through: a camera that is moved about in its slice, and the slice, which is
 /// moved along w and turned about the point that the camera looks at.
 class View {
@@ -24,8 +21,8 @@ class View {
   }
 
   /// Shows just what that camera sees.
-  look(camera) {
-    const c = {...kCameraDefaults, ...camera}, axes = axesOf(c);
+  look(c) {
+    const axes = axesOf(c);
     if (!axes) throw new Error("camera: its directions are not independent");
     this.axes = axes;
     this.pivot = c.look_at.slice();

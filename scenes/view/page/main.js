@@ -66,7 +66,7 @@ class Page {
   setTime(time) {
     this.time = clamp(time, this.scene.times[0], this.scene.times[this.scene.times.length - 1]);
     this.renderer.moveTo(this.time);
-    if (this.follows && !this.isFixed) this.view.look(filmCamera(this.scene, this.poses, this.time));
+    if (this.follows) this.view.look(filmCamera(this.scene, this.poses, this.time));
   }
 
   goTo(time) {
@@ -208,16 +208,11 @@ class Page {
     this.renderer.draw(this.view.shown(), options);
   }
 
-  /// The body at a point of the stage [CSS pixels]; -1 for none.
-  bodyAt(x, y) {
-    const {width, height} = this.renderer, stage = byId("stage");
-    const column = clamp(Math.floor((x / stage.clientWidth) * width), 0, width - 1);
-    const row = clamp(Math.floor((y / stage.clientHeight) * height), 0, height - 1);
-    return this.renderer.seenBodies(column, row, 1, 1)[0] - 1;
-  }
-
+  /// Chooses the body at a point of the stage [CSS pixels], or none.
   choose(x, y) {
-    this.options.chosen = this.bodyAt(x, y);
+    const {renderer} = this, stage = byId("stage");
+    const column = (x / stage.clientWidth) * renderer.width, row = (y / stage.clientHeight) * renderer.height;
+    this.options.chosen = renderer.seenAt(column, row) - 1;
     this.changed();
   }
 
@@ -269,7 +264,8 @@ function interfaceOf(page) {
       page.changed();
     },
     camera: (camera) => {
-      page.view.look(camera);
+      // What it does not say stays as it is.
+      page.view.look({...page.view.description(), ...camera});
       page.leaveFilm();
       page.changed();
     },
@@ -282,7 +278,7 @@ function interfaceOf(page) {
       page.draw();
       page.renderer.finish();
     },
-    pick: (x, y) => idOf(page.renderer.seenBodies(x, y, 1, 1)[0]),
+    pick: (x, y) => idOf(page.renderer.seenAt(x, y)),
     ids: () => page.renderer.seenBodies().map(idOf),
     camera_toml: () => cameraToml(page.view.description()),
   };

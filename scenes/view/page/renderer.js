@@ -96,6 +96,7 @@ class Renderer {
   draw(camera, options) {
     const gl = this.gl, {width, height} = options;
     const pixel = 2 * Math.tan((camera.fieldOfView * Math.PI) / 360) * options.margin / height;
+    this.seen = null;
     const limit = this.scene.max_distance > 0 ? this.scene.max_distance : 1e30;
     this.film = {width, height, pixel, tile: kTile};
     if (this.width !== width || this.height !== height) this.resize(width, height);
@@ -181,17 +182,25 @@ class Renderer {
     gl.uniform1ui(this.place("chosen"), chosen + 1);
   }
 
-  /// Of each pixel of the last picture, from the top left: number of the body in the page + 1, or 0.
-  seenBodies(x = 0, y = 0, width = this.width, height = this.height) {
-    const gl = this.gl, texels = new Uint32Array(4 * width * height);
-    const seen = new Uint32Array(width * height);
+  /// Of each pixel of the last picture, by rows from the top: number of the body in the page + 1,
+  /// or 0.
+  seenBodies() {
+    if (this.seen) return this.seen;
+    const gl = this.gl, {width, height} = this, texels = new Uint32Array(4 * width * height);
+    this.seen = new Uint32Array(width * height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
-    gl.readPixels(x, this.height - y - height, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
+    gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     for (let row = 0; row < height; ++row)
       for (let column = 0; column < width; ++column)
-        seen[row * width + column] = texels[4 * ((height - 1 - row) * width + column)];
-    return seen;
+        this.seen[row * width + column] = texels[4 * ((height - 1 - row) * width + column)];
+    return this.seen;
+  }
+
+  /// At a pixel from the top left.
+  seenAt(x, y) {
+    const inside = x >= 0 && y >= 0 && x < this.width && y < this.height;
+    return inside ? this.seenBodies()[Math.floor(y) * this.width + Math.floor(x)] : 0;
   }
 
   /// Waits until the card has drawn everything.
