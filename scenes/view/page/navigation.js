@@ -14,6 +14,8 @@ class Navigation {
     area.addEventListener("pointermove", (event) => this.drag(event));
     area.addEventListener("pointerup", (event) => this.release(event));
     area.addEventListener("wheel", (event) => this.wheel(event), {passive: false});
+    // The middle button would begin to scroll.
+    area.addEventListener("mousedown", (event) => event.preventDefault());
     area.addEventListener("contextmenu", (event) => event.preventDefault());
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.pressed.delete(event.code));
@@ -38,7 +40,7 @@ class Navigation {
     if (this.button === 2) view.lookAround(dx * kOrbitSpeed * 0.5, -dy * kOrbitSpeed * 0.5);
     else if (event.shiftKey) view.move(-dx * page.metresAPixel(), dy * page.metresAPixel(), 0);
     else if (event.ctrlKey) view.zoom(Math.exp(0.008 * dy));
-    else view.orbit(-dx * kOrbitSpeed, dy * kOrbitSpeed * -1);
+    else view.orbit(dx * kOrbitSpeed, -dy * kOrbitSpeed);
     page.changed(true);
   }
 

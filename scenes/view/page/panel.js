@@ -30,7 +30,7 @@ class Slider {
       const value = Number(this.number.value);
       if (Number.isFinite(value)) onInput(this.take(value));
     });
-    box.addEventListener("dblclick", () => onInput(this.take(start)));
+    this.range.addEventListener("dblclick", () => onInput(this.take(start)));
   }
   take(value) {
     this.set(value);
