@@ -138,21 +138,4 @@ bool has_mesh_hash(const std::filesystem::path& file, const std::string& hash) {
     return begin.find(hash) != std::string::npos;
 }
 
-std::string base64(std::string_view bytes) {
-    constexpr const char* kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            group =
-                group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
-        const std::size_t digits = std::min<std::size_t>(4, bytes.size() - i + 1);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k < digits ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
-
 }  // namespace tesserae::scenes

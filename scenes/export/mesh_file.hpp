@@ -54,6 +54,4 @@ void write_vtp(const std::filesystem::path& file, const MeshFileInfo& info,
 /// What can be told of a file from its beginning: that it was written with this hash.
 bool has_mesh_hash(const std::filesystem::path& file, const std::string& hash);
 
-std::string base64(std::string_view bytes);
-
 }  // namespace tesserae::scenes

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
 #include "scenes/export/mesh_file.hpp"
+#include "scenes/process/base64.hpp"
 
 namespace tesserae::scenes {
 namespace {

@@ -87,6 +87,22 @@ void add_simulation(CLI::App& app, CommandLine& line) {
                    "which thread simulated what when, as JSON for Perfetto or chrome://tracing");
 }
 
+void add_view(CLI::App& app, CommandLine& line) {
+    CLI::App& view = *app.add_subcommand(
+        "view", "one self-contained page, to look around in the slice with a browser");
+    add_common(view, line);
+    view.add_option("file", line.file,
+                    "scene file (TOML), simulated first into FILE.h5 where bodies move; or a "
+                    "trajectory (HDF5)")
+        ->required();
+    view.add_option("--set", line.sets, "one scene key, for example render.frames_per_second=12")
+        ->allow_extra_args(false);
+    add_output(view, line, "the page: FILE.html");
+    view.add_option("--near-slice", line.near_slice,
+                    "leave out bodies that never come as near as this to the film's slice [m]")
+        ->check(CLI::NonNegativeNumber);
+}
+
 void add_compare(CLI::App& app, CommandLine& line) {
     CLI::App& hash = *app.add_subcommand(
         "hash", "a short hash of what is in files, to compare on different machines");
@@ -210,6 +226,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App& film = *app.add_subcommand("film", "an MP4 of a folder's previews, by ffmpeg");
     add_common(film, line);
     film.add_option("folder", line.file, "that run or render has made")->required();
+    add_view(app, line);
 
     CLI::App& plan =
         *app.add_subcommand("plan", "what a scene needs, what is left out, what it costs");

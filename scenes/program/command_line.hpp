@@ -22,6 +22,7 @@ struct CommandLine {
     std::uint64_t bodies = 0;                 ///< to generate
     std::string format;                       ///< export's: "ply" or "vtk"
     std::optional<double> tolerance, extent;  ///< export's [m]
+    std::optional<double> near_slice;         ///< view's [m]
     int threads = 0;
     bool quiet = false, json = false, overwrite = false, draft = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.

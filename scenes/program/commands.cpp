@@ -149,6 +149,7 @@ int execute(const CommandLine& line) {
     if (line.command == "simulate") simulate_command(line);
     if (line.command == "run" || line.command == "render") run_command(line);
     if (line.command == "film") movie_command(line);
+    if (line.command == "view") view_command(line);
     if (line.command == "plan") plan_command(line);
     if (line.command == "info") info_command(line);
     if (line.command == "hash") hash_command(line);

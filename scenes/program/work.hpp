@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
@@ -11,8 +12,9 @@ namespace tesserae::scenes {
 
 /// What commands on a scene share: the checked scene and its plan.
 struct Work {
-    explicit Work(const CommandLine& line)
-        : scene(load_scene(line.file, line.sets)), plan(make_plan(scene, line.threads)) {}
+    explicit Work(const CommandLine& line) : Work(load_scene(line.file, line.sets), line) {}
+    Work(Scene of, const CommandLine& line)
+        : scene(std::move(of)), plan(make_plan(scene, line.threads)) {}
 
     Scene scene;
     Plan plan;

@@ -1,0 +1,107 @@
+// `tesserae view` as a program: what it makes of scenes and trajectories, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/scenes/program/program.hpp"
+
+namespace tesserae::scenes::testing {
+namespace {
+
+/// What the page holds of the scene.
+nlohmann::json scene_in(const std::string& page) {
+    const std::string begin = "id=\"scene-data\">";
+    const auto at = page.find(begin) + begin.size();
+    return nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+TEST(View, SimulatesASceneFirstAndShowsTheFilmsFrames) {
+    const Folder folder("view");
+    const auto scene = folder.write("drop.toml", small_scene(0.2));
+    const Outcome view = tesserae({"view", scene, "-o", folder.file("a.html"), "--json"});
+    ASSERT_EQ(view.status, 0) << view.err;
+    const auto report = nlohmann::json::parse(view.out);
+    EXPECT_EQ(report["moments"], 4);
+    EXPECT_EQ(report["bytes"], content(folder / "a.html").size());
+    const auto json = scene_in(content(folder / "a.html"));
+    ASSERT_EQ(json["times"].size(), 4u);  // 20 a second
+    EXPECT_DOUBLE_EQ(json["times"][3].get<double>(), 0.15);
+
+    // The trajectory is beside it, and makes the same page; so do any threads.
+    ASSERT_EQ(tesserae({"view", folder.file("a.h5"), "-o", folder.file("b.html")}).status, 0);
+    EXPECT_EQ(content(folder / "a.html"), content(folder / "b.html"));
+    ASSERT_EQ(tesserae({"view", scene, "-o", folder.file("c.html"), "--threads", "1"}).status, 0);
+    EXPECT_EQ(content(folder / "a.html"), content(folder / "c.html"));
+}
+
+/// One that stores other steps than frames need is shown as it is.
+TEST(View, ShowsTheStepsOfATrajectoryThatHasNotThoseOfTheFrames) {
+    const Folder folder("view-steps");
+    const auto scene = folder.write("drop.toml", small_scene(0.2));
+    const auto file = folder.file("drop.h5");
+    ASSERT_EQ(tesserae({"simulate", scene, "-o", file, "--store-every", "5"}).status, 0);
+    ASSERT_EQ(tesserae({"view", file, "-o", folder.file("a.html")}).status, 0);
+    const auto json = scene_in(content(folder / "a.html"));
+    ASSERT_EQ(json["times"].size(), 3u);
+    EXPECT_DOUBLE_EQ(json["times"][2].get<double>(), 10.0 / 60);
+}
+
+TEST(View, ShowsStillsAndScenesWithoutBodies) {
+    const Folder folder("view-still");
+    const auto still =
+        folder.write("still.toml", "[[body]]\nshape = \"hypersphere\"\nradius = 1\n");
+    const auto empty = folder.write("empty.toml", "[camera]\nposition = [0, 0, -5, 0]\n");
+    EXPECT_EQ(tesserae({"view", still, "-o", folder.file("still.html")}).status, 0);
+    EXPECT_EQ(tesserae({"view", empty, "-o", folder.file("empty.html")}).status, 0);
+    EXPECT_EQ(files_below(folder.path()),
+              (std::vector<std::string>{"empty.html", "empty.toml", "still.html", "still.toml"}));
+}
+
+TEST(View, LeavesOutWhatIsNeverNearTheSlice) {
+    const Folder folder("view-near");
+    const auto scene = folder.write("scene.toml", R"([[body]]
+shape = "hypersphere"
+radius = 1
+[[body]]
+shape = "hypersphere"
+radius = 1
+position = [0, 0, 0, 5]
+)");
+    const auto bodies = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> line = {"view", scene, "-o", folder.file("a.html"), "--json"};
+        line.insert(line.end(), more.begin(), more.end());
+        return nlohmann::json::parse(tesserae(line).out)["bodies"].get<int>();
+    };
+    EXPECT_EQ(bodies({}), 2);
+    EXPECT_EQ(bodies({"--near-slice", "4.1"}), 2);
+    EXPECT_EQ(bodies({"--near-slice", "3.9"}), 1);
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("a.html"), "--near-slice", "-1"}).status,
+              2);
+}
+
+TEST(View, RefusesWhatItCannotDo) {
+    const Folder folder("view-refuse");
+    const auto scene = folder.write("drop.toml", small_scene(0.1));
+    const auto page = folder.file("a.html");
+    const Outcome name = tesserae({"view", scene, "-o", folder.file("a.txt")});
+    EXPECT_EQ(name.status, 2);
+    EXPECT_NE(name.err.find(".html"), std::string::npos) << name.err;
+    EXPECT_EQ(tesserae({"view", folder.file("none.toml"), "-o", page}).status, 2);
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("none/a.html")}).status, 1);
+
+    // Another scene's page, or no page, is not replaced unasked.
+    ASSERT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
+    EXPECT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
+    const std::vector<std::string> other = {"view", scene,   "-o",
+                                            page,   "--set", "camera.field_of_view=20"};
+    EXPECT_EQ(tesserae(other).status, 2);
+    auto replaced = other;
+    replaced.push_back("--overwrite");
+    EXPECT_EQ(tesserae(replaced).status, 0);
+    folder.write("b.html", "mine");
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("b.html")}).status, 2);
+    EXPECT_EQ(content(folder / "b.html"), "mine");
+}
+
+}  // namespace
+}  // namespace tesserae::scenes::testing

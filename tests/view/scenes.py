@@ -1,0 +1,113 @@
+"""Scenes by which pages are held against the renderer."""
+
+LIGHT = """
+[[light]]
+type = "sun"
+direction = [0.4, -1, 0.5, 0.2]
+strength = 4
+[[light]]
+type = "sky"
+strength = 0.3
+[[material]]
+name = "tiles"
+pattern = "checker"
+"""
+
+SHAPES = {
+    "hypersphere": "radius = 0.7",
+    "hypercapsule": "radius = 0.4\nheight = 1.1",
+    "hyperbox": "size = [1.1, 0.8, 1.3, 0.9]",
+    "5-cell": 'shape = "polychoron"\nregular = "5-cell"\nradius = 1.1',
+    "8-cell": 'shape = "polychoron"\nregular = "8-cell"\nradius = 0.9',
+    "16-cell": 'shape = "polychoron"\nregular = "16-cell"\nradius = 0.9',
+    "24-cell": 'shape = "polychoron"\nregular = "24-cell"\nradius = 0.9',
+    "600-cell": 'shape = "polychoron"\nregular = "600-cell"\nradius = 0.8',
+    "duoprism": "polygons = [5, 7]\nradii = [0.6, 0.7]",
+    "spherinder": "radius = 0.6\nheight = 0.9",
+    "cubinder": "radius = 0.6\nsize = [0.8, 1.0]",
+    "duocylinder": "radii = [0.5, 0.7]",
+}
+
+
+def body(name, text, position, rotation):
+    """One [[body]]; `text` names its shape unless the name does."""
+    shape = "" if "shape =" in text else f'shape = "{name}"\n'
+    turns = ", ".join(f"{plane} = {angle}" for plane, angle in rotation.items())
+    return (f'[[body]]\nname = "{name}"\n{shape}{text}\nmaterial = "tiles"\n'
+            f"position = {list(position)}\nrotation = {{ {turns} }}\n")
+
+
+def camera(position, look_at, more=""):
+    return f"[camera]\nposition = {list(position)}\nlook_at = {list(look_at)}\n{more}\n"
+
+
+def all_shapes(origin=(0, 0, 0, 0), more=""):
+    """Every shape on a plane, in rows, each turned its own way and off the slice by its own bit."""
+    def at(*offset):
+        return [a + b for a, b in zip(origin, offset)]
+    text = camera(at(0, 3.2, -7.5, 0), at(0, 0.3, 0.6, 0), more) + LIGHT
+    text += (f'[[body]]\nname = "floor"\nshape = "hyperplane"\nnormal = [0, 1, 0.02, 0.1]\n'
+             f"offset = {plane_offset(at(0, -1.2, 0, 0), (0, 1, 0.02, 0.1))}\n")
+    for i, (name, shape) in enumerate(SHAPES.items()):
+        place = at(2.1 * (i % 4 - 1.5), 0.0, 2.1 * (i // 4), 0.11 * (i % 3 - 1))
+        turn = {"xy": 20 + 13 * i, "xw": 10 + 7 * i, "yz": 5 * i, "zw": 30 - 4 * i}
+        text += body(name, shape, place, turn)
+    return text
+
+
+def plane_offset(point, normal):
+    length = sum(n * n for n in normal) ** 0.5
+    return sum(p * n for p, n in zip(point, normal)) / length
+
+
+def one_120_cell():
+    text = camera((0, 0.9, -2.6, 0), (0, 0, 0, 0)) + LIGHT
+    return text + body("120-cell", 'shape = "polychoron"\nregular = "120-cell"\nradius = 1',
+                       (0, 0, 0, 0.1), {"xw": 20, "yz": 33})
+
+
+# The slice turned out of w, so that all of its axes have a part of all others.
+TURNED = "fourth = [0.3, -0.2, 0.15, 0.9]\nup = [0.1, 1, 0, 0.2]\nfield_of_view = 47"
+FAR = (1000.0, -1000.0, 1000.0, 1000.0)
+
+HOSTILE = "</script><script>window.hit = 1</script><img src=x onerror='window.hit=1'>\n[camera]"
+
+
+def hostile():
+    """A ball whose name would be markup, a script and TOML if it were not text."""
+    name = HOSTILE.replace("\n", "\\n")
+    return (camera((0, 0, -5, 0), (0, 0, 0, 0)) + LIGHT +
+            f'[[body]]\nname = "{name}"\nshape = "hypersphere"\nradius = 1\n')
+
+
+def crossing():
+    """A ball of radius 1 that goes through the slice along w: in it from 1 s to 3 s. A moving
+    camera."""
+    return """
+[physics]
+duration = 4
+gravity = [0, 0, 0, 0]
+[render]
+frames_per_second = 10
+[camera]
+look_at = [0, 0, 0, 0]
+[[camera.key]]
+time = 0
+position = [0, 1, -6, 0]
+[[camera.key]]
+time = 4
+position = [4, 2, -4, 0]
+""" + LIGHT + """
+[[body]]
+name = "crosser"
+shape = "hypersphere"
+radius = 1
+position = [0, 0, 0, -2]
+velocity = [0, 0, 0, 1]
+[[body]]
+name = "stays"
+shape = "hyperbox"
+size = [1, 1, 1, 1]
+position = [2.7, 0, 0, 0]
+angular_velocity = { xw = 1, yz = 2 }
+"""
