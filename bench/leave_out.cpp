@@ -212,14 +212,19 @@ Work program_of(const scenes::Scene& scene, bool films, const fs::path& folder) 
     const auto simulate = [=] {
         if (plan.moves) scenes::simulate(scene, plan, trajectory, 0, true, true);
     };
-    if (!films) return [=] { return time_of(simulate); };
+    if (!films)
+        return [=] {
+            fs::remove(trajectory);
+            return time_of(simulate);
+        };
     simulate();
     std::vector<int> frames(static_cast<std::size_t>(plan.frames));
     std::iota(frames.begin(), frames.end(), 0);
     return [=] {
         fs::remove_all(folder / "frames");
         return time_of([&] {
-            scenes::film(scene, frames, plan.moves ? trajectory : fs::path(), folder, true, true);
+            scenes::film(scene, frames, plan.moves ? trajectory : fs::path(), folder,
+                         scenes::Replace::kAll, true);
         });
     };
 }

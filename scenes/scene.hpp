@@ -28,6 +28,8 @@ struct Scene {
     render::Lights lights;
     render::Settings render;
 
+    std::vector<std::string> unused;  ///< a line for each key of the file that changes nothing
+
     std::string source;     ///< the file's text as read
     std::string effective;  ///< canonical TOML after overrides: the same scene gives the same text
     std::string hash;       ///< 32 hex digits of `effective`

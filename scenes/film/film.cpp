@@ -1,22 +1,17 @@
 #include "scenes/film/film.hpp"
 
 #include <chrono>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <vector>
 
-#include "core/algebra/rotor.hpp"
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
-#include "render/file/image_info.hpp"
 #include "render/picture_needs.hpp"
+#include "scenes/film/coast.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
-#include "scenes/load/effective.hpp"
-#include "scenes/load/versions.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
@@ -25,46 +20,6 @@ namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSceneFile = "scene.toml";
-
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
-/// How a frame that has another hash differs from those that would be made of a scene.
-std::string other_frame(const Scene& scene, const render::ImageInfo& there,
-                        const render::FrameInfo& here) {
-    const bool same_scene = there.scene_hash == frame_hash(scene.effective, there.picture_version,
-                                                           there.motion_version);
-    if (same_scene && there.picture_version != here.picture_version)
-        return fmt::format("is a frame of picture version {}, this program makes version {}",
-                           there.picture_version, here.picture_version);
-    if (same_scene && there.motion_version != here.motion_version)
-        return fmt::format("shows bodies moved by motion version {}, here by version {}",
-                           there.motion_version, here.motion_version);
-    return fmt::format("is a frame of another scene (hash {}, here {})", there.scene_hash,
-                       here.scene_hash);
-}
-
-/// A whole frame of this scene and these versions is there already.
-bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
-             bool overwrite) {
-    if (!fs::exists(files.exr)) return false;
-    render::ImageInfo there;
-    try {
-        there = render::read_image_info(files.exr);
-    } catch (const InputError&) {
-        if (!overwrite) throw;
-    }
-    if (there.scene_hash == info.scene_hash) return fs::exists(files.preview);
-    if (overwrite) return false;
-    throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",
-                                 files.exr.string(), other_frame(scene, there, info)));
-}
 
 /// The bodies' names by object id (body number + 1), as a JSON object: "first-last" for lattices.
 std::string id_names(const Scene& scene) {
@@ -92,15 +47,6 @@ struct Moment : render::Neighbour {
         return true;
     }
 };
-
-/// Moves bodies for a time [s] (back, if it is negative) at the velocities that they have.
-void coast(Bodies& bodies, double time) {
-    for (BodyId id = 0; id < bodies.size(); ++id) {
-        bodies.position[id] += time * bodies.velocity[id];
-        if (!(bodies.angular_velocity[id] == Bivector{}))
-            bodies.rotor[id] = exp(-0.5 * time * bodies.angular_velocity[id]) * bodies.rotor[id];
-    }
-}
 
 /// What a frame shows: the shutter opens and, if it is open for any time, closes.
 struct Exposure {
@@ -185,23 +131,6 @@ struct Shown {
 
 }  // namespace
 
-void create_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-        throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-}
-
-void require_folder_of(const Scene& scene, const fs::path& folder, bool overwrite) {
-    const fs::path file = folder / kSceneFile;
-    if (overwrite || !fs::exists(file)) return;
-    const std::string other = read_text(file);
-    if (other != scene.effective)
-        throw InputError(fmt::format(
-            "{}: holds frames of another scene: {}; choose another folder, or --overwrite",
-            folder.string(), first_difference(other, scene.effective)));
-}
-
 namespace {
 
 /// That renders one pixel of a frame.
@@ -232,22 +161,21 @@ std::string invalid_samples_text(const render::FrameStats& stats, const Scene& s
 }
 
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
-                const fs::path& folder, bool overwrite, bool quiet) {
+                const fs::path& folder, Replace replace, bool quiet) {
     const auto begin = std::chrono::steady_clock::now();
-    require_folder_of(scene, folder, overwrite);
+    const bool is_changed = !require_folder_of(scene, folder, replace).empty();
     Poses poses(scene, frames, trajectory);
 
     FilmReport report;
     report.frames = folder / "frames";
     create_folder(report.frames);
     create_folder(folder / "preview");
-    if (!fs::exists(folder / kSceneFile) || overwrite)
+    if (!fs::exists(folder / kSceneFile) || is_changed || replace == Replace::kAll)
         write_file(folder / kSceneFile, scene.effective);
 
     render::FrameInfo info;
     info.scene_name = scene.name;
     info.motion_version = poses.motion_version();
-    info.scene_hash = frame_hash(scene.effective, info.picture_version, info.motion_version);
     info.program_version = TESSERAE_VERSION;
     info.id_names = id_names(scene);
     std::optional<render::Mattes> mattes;
@@ -257,12 +185,14 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         info.frame = frames[i];
+        info.scene_hash =
+            hash_of_frame(scene, info.frame, info.picture_version, info.motion_version);
         info.time = frame_instant(scene, frames[i]).time;
         const std::string stem = fmt::format("{}.{:04}", scene.name, info.frame);
         const render::FrameFiles files = {report.frames / (stem + ".exr"),
                                           folder / "preview" / (stem + ".png")};
         report.preview = files.preview;
-        if (is_done(scene, info, files, overwrite)) {
+        if (is_done(scene, info, files, replace)) {
             progress.start_at(++report.kept);
             continue;
         }

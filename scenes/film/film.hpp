@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/frame.hpp"
+#include "scenes/film/film_folder.hpp"
 #include "scenes/scene.hpp"
 
 namespace tesserae::scenes {
@@ -18,15 +19,6 @@ struct FilmReport {
     std::filesystem::path frames, preview;  ///< folder of the frames; the last frame's preview
 };
 
-/// A folder holds the frames of one scene; its scene.toml is the effective text of that scene.
-/// @throws InputError   `folder` holds another scene's, and not `overwrite`; names the first
-/// difference
-void require_folder_of(const Scene& scene, const std::filesystem::path& folder, bool overwrite);
-
-/// Makes a folder and those above it.
-/// @throws RunError   with the path and the system's reason
-void create_folder(const std::filesystem::path& folder);
-
 /// Which samples of a frame were left out as infinite or no number, and the command that renders
 /// the pixel of the lowest again. Empty if there are none.
 std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame);
@@ -38,13 +30,12 @@ std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& sc
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
 /// the caller's parallel::Threads.
-/// @throws InputError   the folder holds another scene's frames and not `overwrite`; the trajectory
-/// is
-///                      of another motion or lacks steps that the frames need
+/// @throws InputError   the folder holds another scene's frames that may not be replaced; the
+///                      trajectory is of another motion or lacks steps that the frames need
 /// @throws RunError     a file cannot be written
 /// @throws Stopped      after a signal; finished frames are kept
 FilmReport film(const Scene& scene, const std::vector<int>& frames,
                 const std::filesystem::path& trajectory, const std::filesystem::path& folder,
-                bool overwrite, bool quiet);
+                Replace replace, bool quiet);
 
 }  // namespace tesserae::scenes

@@ -35,15 +35,6 @@ TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every) {
     return header;
 }
 
-/// `file` is there, whole, and holds just these steps of this motion by this program's law.
-bool is_complete(const Scene& scene, const fs::path& file, const std::vector<std::uint64_t>& steps,
-                 bool overwrite) {
-    if (overwrite || !fs::exists(file)) return false;
-    const TrajectoryReader there(file);
-    return there.header().motion_hash == scene.motion_hash &&
-           there.header().motion_version == kMotionVersion && there.steps() == steps;
-}
-
 StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& found,
                    const Bodies& bodies) {
     StepFacts facts;
@@ -122,6 +113,28 @@ std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_
     return steps;
 }
 
+Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_every) {
+    if (!fs::exists(file)) return Served::kByNothing;
+    std::optional<TrajectoryReader> there;
+    try {
+        there.emplace(file);
+    } catch (const InputError&) {
+        return Served::kByOther;
+    }
+    if (there->header().motion_hash != scene.motion_hash ||
+        there->header().motion_version != kMotionVersion)
+        return Served::kByOther;
+    const std::vector<std::uint64_t>& stored = there->steps();
+    const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
+    if (stored == steps) return Served::kWhole;
+    if (std::includes(stored.begin(), stored.end(), steps.begin(), steps.end()))
+        return Served::kByMore;
+    const bool is_beginning = there->header().store_every == store_every &&
+                              stored.size() < steps.size() &&
+                              std::equal(stored.begin(), stored.end(), steps.begin());
+    return is_beginning ? Served::kByBeginning : Served::kByOtherSteps;
+}
+
 SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
                         std::uint64_t store_every, bool overwrite, bool quiet,
                         parallel::Trace* trace) {
@@ -130,7 +143,7 @@ SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& fi
     SimulateReport report;
     report.rows = steps.size();
     report.first_step = report.last_step = steps.back();
-    if (!is_complete(scene, file, steps, overwrite)) {
+    if (how_served(scene, file, store_every) != Served::kWhole) {
         TrajectoryWriter writer(file, header_of(scene, store_every), steps, overwrite);
         if (!writer.note().empty()) fmt::print(stderr, "tesserae: {}\n", writer.note());
         store_rows(scene, plan, writer, steps, report, quiet, trace);

@@ -21,10 +21,22 @@ struct SimulateReport {
 /// The steps that a trajectory stores: every K-th from 0 on, or those that all frames need (K = 0).
 std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_every);
 
+/// How a trajectory that is there serves a scene.
+enum class Served {
+    kByNothing,     ///< none is there
+    kWhole,         ///< it holds just the steps
+    kByMore,        ///< it holds them and others
+    kByBeginning,   ///< it holds the first of them: it is continued
+    kByOtherSteps,  ///< it is of this motion, but lacks steps
+    kByOther,       ///< it is of another motion or motion version, or no trajectory
+};
+Served how_served(const Scene& scene, const std::filesystem::path& file, std::uint64_t store_every);
+
 /// Moves the scene's bodies and stores their states in `file`. A whole file of the same motion and
 /// steps is left as it is; an unfinished one is continued, and so is a finished one of a shorter
 /// duration: the bytes of every dataset are those of one straight run.
 /// Runs on the threads of the caller's parallel::Threads.
+/// @param overwrite   a trajectory of other motion or steps is replaced, one that serves is kept
 /// @param trace     records the stages of every step that is taken
 /// @throws InputError   `file` is of another motion or motion version, stores other steps or more
 /// than the scene's,

@@ -20,6 +20,7 @@ std::string list(const double* values, int count) {
 enum class Lines {
     kAll,
     kMotion,  ///< those that decide how bodies move
+    kLook,    ///< all but how long the scene lasts
     kNames,   ///< those that give bodies their names
 };
 
@@ -70,6 +71,8 @@ class Walker {
             case Lines::kMotion:
                 if (header_ == "[physics]") return key() != "duration";
                 return is_of_bodies && key() != "name" && key() != "material" && key() != "visible";
+            case Lines::kLook:
+                return header_ != "[physics]" || key() != "duration";
             case Lines::kNames:
                 return is_of_bodies && key() == "name";
         }
@@ -191,11 +194,19 @@ void EffectiveWriter::line(std::string_view name, std::string_view value) {
     text_.append(name).append(" = ").append(value).append("\n");
 }
 
-std::string motion_part(std::string_view effective) {
+namespace {
+
+std::string part_of(std::string_view effective, Lines lines) {
     std::string part;
-    for (Walker at(effective, Lines::kMotion); !at.at_end(); at.next())
-        part.append(at.line()).append("\n");
+    for (Walker at(effective, lines); !at.at_end(); at.next()) part.append(at.line()).append("\n");
     return part;
+}
+
+}  // namespace
+
+std::string motion_part(std::string_view effective) { return part_of(effective, Lines::kMotion); }
+std::string without_duration(std::string_view effective) {
+    return part_of(effective, Lines::kLook);
 }
 
 std::string first_difference(const std::string& there, const std::string& here) {

@@ -52,6 +52,9 @@ class EffectiveWriter {
 /// on: not how they are shown or called, nor for how long they move.
 std::string motion_part(std::string_view effective);
 
+/// All lines of an effective scene but how long it lasts.
+std::string without_duration(std::string_view effective);
+
 /// The bodies of two effective scenes of the same motion have the same names.
 bool same_body_names(std::string_view there, std::string_view here);
 

@@ -68,6 +68,7 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     load_render(root, origin, scene, out);
     require_view(scene, origin);
 
+    find_unused_keys(root, origin, scene);
     scene.hash = hex_hash(out.text());
     scene.motion_hash = motion_hash(out.text(), kMotionVersion);
     scene.effective = out.take_text();

@@ -27,6 +27,8 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
                  EffectiveWriter& out);
 
 void load_camera(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+/// Once all is loaded: keys that the file has and this scene does not use, into Scene::unused.
+void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene);
 /// Once all is loaded: that the moving camera has a frame of axes in every frame of the film.
 void require_view(const Scene& scene, const Origin& origin);
 void load_lights(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);

@@ -119,10 +119,20 @@ bool TableReader::require(std::string_view key, std::string_view expected) {
     return false;
 }
 
+std::string TableReader::text_at(const toml::node& node, std::string_view key,
+                                 std::string_view what) const {
+    return fmt::format("{}: {}: {} = {}: {}", place_of(node.source(), origin_), subject_,
+                       printable(key), shown(node), what);
+}
+
 void TableReader::fail_at(const toml::node& node, std::string_view key,
                           std::string_view what) const {
-    throw InputError(fmt::format("{}: {}: {} = {}: {}", place_of(node.source(), origin_), subject_,
-                                 printable(key), shown(node), what));
+    throw InputError(text_at(node, key, what));
+}
+
+std::string TableReader::remark(std::string_view key, std::string_view what) {
+    const toml::node* node = find(key);
+    return node == nullptr ? std::string() : text_at(*node, key, what);
 }
 
 void TableReader::fail(std::string_view key, std::string_view what) {

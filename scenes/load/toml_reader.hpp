@@ -108,11 +108,14 @@ class TableReader {
     bool is_override(std::string_view key);
     [[noreturn]] void fail(std::string_view key, std::string_view what);
     [[noreturn]] void fail_here(std::string_view what) const;
+    /// What fail() would say; empty where the key is absent.
+    std::string remark(std::string_view key, std::string_view what);
     /// Refuses unknown keys, then missing ones.
     void finish();
 
   private:
     const toml::node* find(std::string_view key);
+    std::string text_at(const toml::node& node, std::string_view key, std::string_view what) const;
     [[noreturn]] void fail_at(const toml::node& node, std::string_view key,
                               std::string_view what) const;
     double real_of(const toml::node& node, std::string_view key, Interval interval,

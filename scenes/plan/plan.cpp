@@ -155,6 +155,7 @@ std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
 
 Plan make_plan(const Scene& scene, int threads) {
     Plan plan;
+    plan.warnings = scene.unused;
     plan.bodies = scene.bodies.size();
     const auto can_move = [&](std::uint32_t type) { return is_movable(scene.bodies.types[type]); };
     plan.movable_bodies = count_if_type(scene.bodies, can_move);

@@ -74,6 +74,9 @@ void add_picture(CLI::App& app, CommandLine& line, Typed& typed) {
     app.add_option("--crop", typed.crop, "x0,y0,x1,y1: pixels from the top left, half open");
     app.add_option("--integrator", typed.integrator, "direct or path");
     app.add_option("--intersector", typed.intersector, "trace or analytic");
+    app.add_flag("--draft", line.draft,
+                 "a tenth of the time: small, few samples, direct, every second frame, into "
+                 "DIR/draft");
 }
 
 void add_simulation(CLI::App& app, CommandLine& line) {
@@ -188,11 +191,17 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
                       "made by tesserae simulate (default: simulates first where bodies move)");
     add_picture(render, line, typed);
 
+    CLI::App& film = *app.add_subcommand("film", "an MP4 of a folder's previews, by ffmpeg");
+    add_common(film, line);
+    film.add_option("folder", line.file, "that run or render has made")->required();
+
     add_view(app, line);
 
     CLI::App& plan =
         *app.add_subcommand("plan", "what a scene needs, what is left out, what it costs");
     add_scene(plan, line);
+    plan.add_option("--trajectory", line.trajectory,
+                    "made by tesserae simulate: tells when bodies are in the picture");
 
     CLI::App& info = *app.add_subcommand("info", "a summary of a scene, trajectory or image");
     add_common(info, line);

@@ -11,7 +11,7 @@ namespace tesserae::scenes {
 /// What the user typed, checked as far as it can be without the scene.
 struct CommandLine {
     std::string command;  ///< "run", "simulate", ...; empty: only help or version was asked for
-    std::filesystem::path file;                ///< the scene, or info's file
+    std::filesystem::path file;                ///< the scene, info's file, or film's folder
     std::vector<std::filesystem::path> files;  ///< hash's, or diff's two
     std::filesystem::path output;
     std::filesystem::path trajectory;
@@ -22,7 +22,7 @@ struct CommandLine {
     std::uint64_t bodies = 0;          ///< to generate
     std::optional<double> near_slice;  ///< of view [m]
     int threads = 0;
-    bool quiet = false, json = false, overwrite = false;
+    bool quiet = false, json = false, overwrite = false, draft = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.
     std::vector<std::string> sets;
 };

@@ -1,35 +1,39 @@
 #include "scenes/program/commands.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/error.hpp"
-#include "core/file/file_writer.hpp"
 #include "parallel/threads.hpp"
-#include "parallel/trace.hpp"
-#include "scenes/compare/file_kind.hpp"
-#include "scenes/film/film.hpp"
 #include "scenes/film/simulate.hpp"
 #include "scenes/generate/generate.hpp"
-#include "scenes/load/load.hpp"
-#include "scenes/plan/plan.hpp"
+#include "scenes/plan/cost.hpp"
+#include "scenes/plan/in_slice.hpp"
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
+#include "scenes/program/film_commands.hpp"
 #include "scenes/program/info.hpp"
+#include "scenes/program/view_command.hpp"
+#include "scenes/program/work.hpp"
 #include "scenes/timeline.hpp"
-#include "scenes/trajectory/trajectory.hpp"
-#include "scenes/view/view.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+Json to_json(const InPicture& body) {
+    return {{"name", body.name},
+            {"bodies", body.bodies},
+            {"most_bodies", body.most_bodies},
+            {"height", body.largest},
+            {"times", body.times}};
+}
 
 Json to_json(const Plan& plan) {
     Json decisions = Json::array();
@@ -46,170 +50,70 @@ Json to_json(const Plan& plan) {
             {"warnings", plan.warnings}};
 }
 
-Json to_json(const SimulateReport& r) {
-    return {{"first_step", r.first_step},
-            {"last_step", r.last_step},
-            {"rows", r.rows},
-            {"seconds", r.seconds}};
+std::string gigabytes(auto bytes) {
+    return fmt::format("{:.2f} GB", 1e-9 * static_cast<double>(bytes));
 }
 
-Json to_json(const FilmReport& r) {
-    return {{"frames", r.frames.string()},
-            {"rendered", r.rendered},
-            {"copied", r.copied},
-            {"kept", r.kept},
-            {"view_rays", r.stats.view_rays},
-            {"shadow_rays", r.stats.shadow_rays},
-            {"bounce_rays", r.stats.bounce_rays},
-            {"invalid_samples", r.stats.invalid_samples},
-            {"clamped_pixels", r.stats.clamped_pixels},
-            {"distance_evaluations", r.stats.distance_evaluations},
-            {"seconds", r.seconds}};
-}
-
-void print_plan(const Plan& plan) {
+void print_plan(const Plan& plan, const Cost& cost, std::uint64_t taken) {
     fmt::print("bodies      {} ({} movable)\n", plan.bodies, plan.movable_bodies);
-    fmt::print("steps       {}\n", plan.steps);
+    fmt::print(
+        "steps       {}{}\n", plan.steps,
+        plan.moves && taken < plan.steps ? fmt::format(" ({} to the last frame)", taken) : "");
     fmt::print("frames      {}\n", plan.frames);
     fmt::print("view rays   {}\n", plan.view_rays);
-    fmt::print("memory      {:.2f} GB\n", 1e-9 * static_cast<double>(plan.memory_bytes));
-    fmt::print("trajectory  at most {:.2f} GB\n",
-               1e-9 * static_cast<double>(plan.trajectory_bytes));
+    if (plan.moves) fmt::print("simulating  about {}\n", duration_text(cost.simulate_seconds));
+    fmt::print("rendering   about {}\n", duration_text(cost.render_seconds));
+    for (const std::string& text : cost.measured) fmt::print("measured    {}\n", text);
+    for (const std::string& text : cost.guessed) fmt::print("guessed     {}\n", text);
+    fmt::print("memory      {}\n", gigabytes(plan.memory_bytes));
+    fmt::print("trajectory  at most {}\n", gigabytes(plan.trajectory_bytes));
+    fmt::print("frames      about {}\n", gigabytes(cost.frame_bytes));
     for (const Decision& d : plan.decisions)
         fmt::print("{:9}   {}: {}\n", d.needed ? "needed" : "left out", d.part, d.reason);
     for (const std::string& warning : plan.warnings) fmt::print("warning     {}\n", warning);
 }
 
-/// What commands on a scene share: the checked scene, its plan, and the threads to work on.
-struct Work {
-    explicit Work(const CommandLine& line) : Work(load_scene(line.file, line.sets), line) {}
-    Work(Scene of, const CommandLine& line)
-        : scene(std::move(of)), plan(make_plan(scene, line.threads)) {}
-
-    Scene scene;
-    Plan plan;
-};
-
-/// Prints the JSON object or the text that ends a command.
-void print_result(const CommandLine& line, const Json& json, const std::string& text) {
-    fmt::print("{}\n", line.json ? json.dump() : text);
+void print_names(const SliceReport& slice) {
+    constexpr std::size_t kMostNames = 30;
+    const std::size_t shown = std::min(kMostNames, slice.names.size());
+    for (std::size_t i = 0; i < shown; ++i) fmt::print("seen        {}\n", text_of(slice.names[i]));
+    if (shown < slice.names.size())
+        fmt::print("seen        and {} names more (--json has all)\n", slice.names.size() - shown);
 }
 
-std::string simulated_text(const SimulateReport& r, const fs::path& file) {
-    if (r.first_step == r.last_step) return fmt::format("{}: complete already", file.string());
-    return fmt::format("{}: steps {} to {}, {} stored, {}", file.string(), r.first_step,
-                       r.last_step, r.rows, duration_text(r.seconds));
-}
-
-std::string filmed_text(const FilmReport& r) {
-    const std::string copied =
-        r.copied > 0 ? fmt::format("{} copied (the same as before), ", r.copied) : "";
-    return fmt::format("{} frames rendered, {}{} kept, {}\nframes:  {}\npreview: {}", r.rendered,
-                       copied, r.kept, duration_text(r.seconds), r.frames.string(),
-                       r.preview.string());
-}
-
-/// simulate(), and the trace of it where one is asked for.
-SimulateReport traced_simulate(const CommandLine& line, const Work& work, const fs::path& file) {
-    std::optional<parallel::Trace> trace;
-    if (!line.trace.empty()) {
-        trace.emplace();
-        // Empty at first, so that a path that cannot be written shows before the work.
-        write_file(line.trace, trace->json());
-    }
-    const SimulateReport report = simulate(work.scene, work.plan, file, line.store_every,
-                                           line.overwrite, line.quiet, trace ? &*trace : nullptr);
-    if (trace) write_file(line.trace, trace->json());
-    return report;
-}
-
-void simulate_command(const CommandLine& line) {
-    const Work work(line);
-    require_memory(work.plan, work.scene);
-    stop_gracefully_on_signals();
-    SimulateReport report;
-    parallel::Threads(line.threads).run([&] { report = traced_simulate(line, work, line.output); });
-    Json json = to_json(report);
-    json["trajectory"] = line.output.string();
-    json["hash"] = work.scene.motion_hash;
-    print_result(line, json, simulated_text(report, line.output));
-}
-
-/// `run`, and `render` without a trajectory of a scene that moves: simulate, then render.
-void film_command(const CommandLine& line) {
-    const Work work(line);
-    const Scene& scene = work.scene;
-    const std::vector<int> frames = parse_frames(line.frames, frame_count(scene));
-    require_memory(work.plan, scene);
-    stop_gracefully_on_signals();
-
-    Json json = {{"scene", scene.name}, {"hash", scene.hash}, {"threads", line.threads}};
-    fs::path trajectory = line.trajectory;
-    FilmReport filmed;
-    parallel::Threads(line.threads).run([&] {
-        const bool simulates =
-            trajectory.empty() &&
-            (line.command == "run" ? scene.physics.has_value() : work.plan.moves);
-        if (simulates) {
-            require_folder_of(scene, line.output, line.overwrite);
-            create_folder(line.output);
-            trajectory = line.output / "trajectory.h5";
-            json["simulate"] = to_json(traced_simulate(line, work, trajectory));
-            json["simulate"]["trajectory"] = trajectory.string();
-        }
-        filmed = film(scene, frames, trajectory, line.output, line.overwrite, line.quiet);
-    });
-    json["render"] = to_json(filmed);
-    if (line.command == "run") write_file(line.output / "report.json", json.dump(2) + "\n");
-    print_result(line, json, filmed_text(filmed));
-}
-
-/// The scene that `view` shows: that of a scene file, or the one in a trajectory.
-Scene viewed_scene(const CommandLine& line) {
-    if (kind_of(line.file) != FileKind::kTrajectory) return load_scene(line.file, line.sets);
-    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
-}
-
-void view_command(const CommandLine& line) {
-    const Work work(viewed_scene(line), line);
-    const Scene& scene = work.scene;
-    require_page_of(scene, line.output, line.overwrite);
-    require_memory(work.plan, scene);
-    stop_gracefully_on_signals();
-
-    const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
-    fs::path trajectory = is_trajectory ? line.file : fs::path();
-    Json json = {{"scene", scene.name}, {"hash", scene.hash}};
-    ViewOptions options;
-    options.near_slice = line.near_slice;
-    options.quiet = line.quiet;
-    ViewReport report;
-    parallel::Threads(line.threads).run([&] {
-        if (!is_trajectory && work.plan.moves) {
-            trajectory = fs::path(line.output).replace_extension(".h5");
-            json["simulate"] = to_json(traced_simulate(line, work, trajectory));
-            json["simulate"]["trajectory"] = trajectory.string();
-        }
-        report = write_view(scene, trajectory, line.output, options);
-    });
-    json["page"] = line.output.string();
-    json["bodies"] = report.bodies, json["moments"] = report.moments;
-    json["bytes"] = report.bytes, json["seconds"] = report.seconds;
-    print_result(
-        line, json,
-        fmt::format("{}: {} bodies, {} moments, {:.1f} MB, {}", line.output.string(), report.bodies,
-                    report.moments, 1e-6 * static_cast<double>(report.bytes),
-                    duration_text(report.seconds)));
-}
+/// The most that a plan takes of the user's time [s].
+constexpr double kPlanSeconds = 4;
 
 void plan_command(const CommandLine& line) {
     Work work(line);
     count_off_slice(work.scene, work.plan);
     warn_of_hidden_glass(work.scene, work.plan);
-    if (line.json)
-        fmt::print("{}\n", to_json(work.plan).dump());
-    else
-        print_plan(work.plan);
+    const std::vector<int> frames = parse_frames("", work.plan.frames);
+    Cost cost;
+    std::optional<SliceReport> slice;
+    parallel::Threads(line.threads).run([&] {
+        cost = measure_cost(work.scene, work.plan, line.trajectory, frames, kPlanSeconds);
+        if (line.trajectory.empty()) return;
+        slice = look_at_slice(work.scene, line.trajectory, frames);
+        for (std::string& warning : slice->warnings)
+            work.plan.warnings.push_back(std::move(warning));
+    });
+    const std::uint64_t taken = stored_steps(work.scene, 0).back();
+    if (!line.json) {
+        print_plan(work.plan, cost, taken);
+        if (slice) print_names(*slice);
+        return;
+    }
+    Json json = to_json(work.plan);
+    json["steps_to_last_frame"] = taken;
+    json["simulate_seconds"] = cost.simulate_seconds;
+    json["render_seconds"] = cost.render_seconds;
+    json["frame_bytes"] = cost.frame_bytes;
+    json["measured"] = cost.measured;
+    json["guessed"] = cost.guessed;
+    if (slice)
+        for (const InPicture& body : slice->names) json["in_picture"].push_back(to_json(body));
+    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void info_command(const CommandLine& line) {
@@ -236,10 +140,15 @@ int report_stop() {
 
 }  // namespace
 
+void print_result(const CommandLine& line, const Json& json, const std::string& text) {
+    fmt::print("{}\n", line.json ? json.dump() : text);
+}
+
 int execute(const CommandLine& line) {
     int status = 0;
     if (line.command == "simulate") simulate_command(line);
-    if (line.command == "run" || line.command == "render") film_command(line);
+    if (line.command == "run" || line.command == "render") run_command(line);
+    if (line.command == "film") movie_command(line);
     if (line.command == "view") view_command(line);
     if (line.command == "plan") plan_command(line);
     if (line.command == "info") info_command(line);

@@ -18,7 +18,7 @@ using hdf5::Handle;
 constexpr const char* kName = "name";
 
 /// Bytes of a chunk, and of what is in memory at once, usual 1 MiB.
-constexpr std::uint64_t kChunkBytes = 1 << 20;
+constexpr std::uint64_t kDescriptionChunkBytes = 1 << 20;
 
 std::string size_text(const Shape& shape) {
     std::string text;
@@ -54,8 +54,8 @@ std::size_t longest_name(const BodyDescriptions& bodies) {
 template <class Copy>
 Handle create_entries(hid_t group, const std::string& name, hid_t type, std::size_t bytes,
                       std::uint64_t bodies, Copy&& copy) {
-    const std::uint64_t chunk =
-        std::clamp<std::uint64_t>(bodies, 1, std::max<std::uint64_t>(1, kChunkBytes / bytes));
+    const std::uint64_t chunk = std::clamp<std::uint64_t>(
+        bodies, 1, std::max<std::uint64_t>(1, kDescriptionChunkBytes / bytes));
     Handle dataset = hdf5::create_growing(group, name, type, {bodies}, {chunk}, true);
     std::string piece;
     for (std::uint64_t begin = 0; begin < bodies; begin += chunk) {

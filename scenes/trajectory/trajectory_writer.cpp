@@ -62,7 +62,7 @@ struct TrajectoryWriter::File {
     File(const fs::path& path, const TrajectoryHeader& h, std::vector<std::uint64_t> s)
         : lock(path), header(h), steps(std::move(s)) {}
 
-    std::uint64_t finished_rows() const;
+    std::uint64_t finished_rows(bool overwrite) const;
     void copy_finished();
     bool continue_leftover(bool overwrite);
     TrajectoryHeader open_leftover();
@@ -136,7 +136,7 @@ std::optional<std::string> TrajectoryWriter::File::other_steps(
 }
 
 /// Rows of a finished file that is there, to be continued.
-std::uint64_t TrajectoryWriter::File::finished_rows() const {
+std::uint64_t TrajectoryWriter::File::finished_rows(bool overwrite) const try {
     if (!fs::exists(lock.path())) return 0;
     const TrajectoryReader there(lock.path());
     auto other = other_motion(there.header());
@@ -145,6 +145,9 @@ std::uint64_t TrajectoryWriter::File::finished_rows() const {
         throw InputError(fmt::format("{}: {}; choose another file, or --overwrite",
                                      lock.path().string(), *other));
     return there.rows();
+} catch (const InputError&) {
+    if (!overwrite) throw;
+    return 0;
 }
 
 /// A finished file is continued in a copy, so that it stays whole until the copy takes its name.
@@ -339,7 +342,7 @@ void TrajectoryWriter::File::forget() {
 TrajectoryWriter::TrajectoryWriter(const fs::path& path, const TrajectoryHeader& header,
                                    std::vector<std::uint64_t> steps, bool overwrite)
     : file_(std::make_unique<File>(path, header, std::move(steps))) {
-    const std::uint64_t finished = overwrite ? 0 : file_->finished_rows();
+    const std::uint64_t finished = file_->finished_rows(overwrite);
     bool continued = file_->continue_leftover(overwrite);
     if (file_->rows < finished) {
         file_->copy_finished();

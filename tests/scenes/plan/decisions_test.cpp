@@ -34,7 +34,8 @@ struct Frame {
         sets.insert(sets.begin(), {"render.size=[16, 12]", "render.samples=2"});
         const SceneFile file(text);
         scene = load_scene(file.path(), sets);
-        const FilmReport report = film(scene, {0}, {}, file.folder() / "out", false, true);
+        const FilmReport report =
+            film(scene, {0}, {}, file.folder() / "out", Replace::kNothing, true);
         stats = report.stats;
         std::ifstream in(report.preview, std::ios::binary);
         preview.assign(std::istreambuf_iterator<char>(in), {});
@@ -44,7 +45,7 @@ struct Frame {
 /// The bytes of the preview of frame 0.
 std::string preview_of(const Scene& scene) {
     const SceneFile file("");
-    const FilmReport report = film(scene, {0}, {}, file.folder() / "out", false, true);
+    const FilmReport report = film(scene, {0}, {}, file.folder() / "out", Replace::kNothing, true);
     std::ifstream in(report.preview, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
 }

@@ -12,6 +12,7 @@
 
 #include "core/dynamics/motion_version.hpp"
 #include "render/picture_version.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/load/versions.hpp"
 #include "scenes/trajectory/trajectory.hpp"
@@ -104,7 +105,8 @@ TEST_F(OtherVersion, ATrajectoryOfAnotherMotionVersionIsRendered) {
     const auto frame = info_of(film + "/frames/drop.0001.exr");
     EXPECT_EQ(frame.at("motion version"), kOther);
     EXPECT_EQ(frame.at("tesserae/sceneHash"),
-              frame_hash(load_scene(scene_, {}).effective, render::kPictureVersion, kOther));
+              frame_hash(without_duration(load_scene(scene_, {}).effective),
+                         render::kPictureVersion, kOther));
     EXPECT_EQ(nlohmann::json::parse(into(film).out).at("render").at("kept"), 3);
     // Frames of both are not mixed.
     const Outcome mixed = into(out_);

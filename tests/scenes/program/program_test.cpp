@@ -22,7 +22,7 @@ TEST(Program, RunMakesTrajectoryFramesPreviewsAndReport) {
     const Outcome run = tesserae({"run", scene, "-o", folder.file("out"), "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(files_below(folder / "out"),
-              (std::vector<std::string>{"frames/drop.0000.exr", "frames/drop.0001.exr",
+              (std::vector<std::string>{"drop.mp4", "frames/drop.0000.exr", "frames/drop.0001.exr",
                                         "frames/drop.0002.exr", "preview/drop.0000.png",
                                         "preview/drop.0001.png", "preview/drop.0002.png",
                                         "report.json", "scene.toml", "trajectory.h5"}));
@@ -129,13 +129,18 @@ fourth = [0.5, 0, 0, 1]
 TEST(Program, AnotherSceneInTheSameFolderIsRefused) {
     const Folder folder("mix");
     const auto scene = folder.write("drop.toml", small_scene(0.1));
-    ASSERT_EQ(tesserae({"run", scene, "-o", folder.file("out")}).status, 0);
-    const Outcome other = tesserae({"run", scene, "-o", folder.file("out"), "--samples", "3"});
-    EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("render.samples"), std::string::npos) << other.err;
-    EXPECT_EQ(
-        tesserae({"run", scene, "-o", folder.file("out"), "--samples", "3", "--overwrite"}).status,
-        0);
+    const std::string out = folder.file("out");
+    ASSERT_EQ(tesserae({"run", scene, "-o", out}).status, 0);
+    const auto refused = [&](std::vector<std::string> words, const char* key) {
+        const Outcome other = tesserae(words);
+        EXPECT_EQ(other.status, 2);
+        EXPECT_NE(other.err.find(key), std::string::npos) << other.err;
+        words.push_back("--overwrite");
+        EXPECT_EQ(tesserae(words).status, 0);
+    };
+    refused({"render", scene, "-o", out, "--samples", "3"}, "render.samples");
+    refused({"run", folder.write("other.toml", small_scene(0.1)), "-o", out}, "scene.name");
+    refused({"run", scene, "-o", out, "--set", "body.ball.radius=0.4"}, "radius");
 }
 
 TEST(Program, TrajectoryOfAnotherMotionIsRefused) {

@@ -1,0 +1,123 @@
+#include "render/measure.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/file/file_writer.hpp"
+#include "render/file/exr_writer.hpp"
+#include "render/file/preview.hpp"
+#include "render/tile/tile_image.hpp"
+#include "render/tile/tiles.hpp"
+
+namespace tesserae::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// So many tiles are looked at, so that their lists stay small.
+constexpr std::size_t kMostTiles = 512;
+/// A file of this size tells what syncing costs.
+constexpr double kMostSynced = 4e6;
+
+class Watch {
+  public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - begin_).count();
+        begin_ = now;
+        return seconds;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Every so many of a frame's tiles; `all` counts them.
+std::vector<Tile> some_tiles(const FrameScene& scene, const Settings& settings, std::size_t& all) {
+    const Crop window = settings.window();
+    const auto along = [&](int pixels) {
+        return static_cast<std::size_t>((pixels + settings.tile - 1) / settings.tile);
+    };
+    all = along(window.x1 - window.x0) * along(window.y1 - window.y0);
+    const std::size_t every = (all + kMostTiles - 1) / kMostTiles;
+    TileSource source(scene.slice(), window, settings.tile);
+    std::vector<Tile> tiles;
+    std::size_t number = 0;
+    while (std::optional<Tile> tile = source.next())
+        if (number++ % every == every / 2) tiles.push_back(*std::move(tile));
+    return tiles;
+}
+
+/// Numbers below `count` in an order of which every beginning is spread evenly.
+std::vector<std::size_t> spread_order(std::size_t count) {
+    const auto golden = [&](std::size_t i) {
+        const double place = 0.6180339887498949 * static_cast<double>(i);
+        return place - std::floor(place);
+    };
+    std::vector<std::size_t> order(count), rank(count);
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return golden(a) < golden(b); });
+    // The i-th in time stands where the i-th multiple of the golden ratio does.
+    for (std::size_t place = 0; place < count; ++place) rank[order[place]] = place;
+    return rank;
+}
+
+/// What a file of so many bytes costs beside making them.
+void write_and_remove(const fs::path& file, double bytes) {
+    write_file(file, std::string(static_cast<std::size_t>(std::min(bytes, kMostSynced)), '\0'));
+    fs::remove(file);
+}
+
+}  // namespace
+
+FrameCost measure_frame(const Picture& picture, const FrameInfo& info, double seconds,
+                        const fs::path& folder, const std::atomic<bool>& stop) {
+    const Settings& settings = picture.settings;
+    FrameCost cost;
+    Watch watch;
+    const FrameScene scene(picture, true);
+    const std::vector<Tile> tiles = some_tiles(scene, settings, cost.all);
+    ExrWriter image(folder / "measured.exr", settings, settings.window(), info, picture.camera,
+                    scene.camera(), picture.mattes);
+    Preview small(settings.window(), settings.exposure);
+    cost.before = watch.lap();
+
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    const std::vector<std::size_t> order = spread_order(tiles.size());
+    std::vector<TileImage> images(8 * threads);
+    std::vector<PackedTile> packed(images.size());
+    while (cost.rendered < tiles.size() && (cost.rendered == 0 || cost.tiles < seconds)) {
+        const std::size_t count = std::min(images.size(), tiles.size() - cost.rendered);
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            images[i] = render_tile(scene, tiles[order[cost.rendered + i]], stop);
+            packed[i] = image.pack(images[i]);
+        });
+        cost.tiles += watch.lap();
+        for (std::size_t i = 0; i < count; ++i) {
+            image.write(packed[i]);
+            small.add(images[i]);
+            cost.bytes += static_cast<double>(packed[i].bytes.size());
+        }
+        // One thread does this while the others render.
+        cost.tiles += watch.lap() / static_cast<double>(threads);
+        cost.rendered += count;
+    }
+    cost.bytes *= static_cast<double>(cost.all) / static_cast<double>(cost.rendered);
+    small.write(folder / "measured.png");
+    fs::remove(folder / "measured.png");
+    write_and_remove(folder / "measured.bytes", cost.bytes);
+    cost.after = watch.lap();
+    return cost;
+}
+
+}  // namespace tesserae::render

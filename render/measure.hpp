@@ -1,0 +1,29 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+
+#include "render/picture.hpp"
+
+namespace tesserae::render {
+
+/// What render_frame() would cost, from some of a frame's tiles.
+struct FrameCost {
+    double before = 0;                  ///< trees and lists [s]
+    double tiles = 0;                   ///< those that were rendered, on all threads [s]
+    double after = 0;                   ///< the preview and what a file costs beside its tiles [s]
+    double bytes = 0;                   ///< of the image, all tiles
+    std::size_t rendered = 0, all = 0;  ///< tiles
+
+    double seconds() const {
+        return before + after + tiles * static_cast<double>(all) / static_cast<double>(rendered);
+    }
+};
+
+/// Renders tiles all over a frame until about `seconds` have passed; leaves no file.
+/// @param folder   for a file meanwhile
+/// @throws as render_frame()
+FrameCost measure_frame(const Picture& picture, const FrameInfo& info, double seconds,
+                        const std::filesystem::path& folder, const std::atomic<bool>& stop);
+
+}  // namespace tesserae::render

@@ -1,0 +1,102 @@
+#include "scenes/film/film_folder.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/load/versions.hpp"
+#include "scenes/timeline.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+/// A frame shows that the bodies stop, or that there is no next frame.
+bool shows_end(const Scene& scene, int frame) {
+    if (!scene.physics) return false;
+    const std::uint64_t last = step_count(scene);
+    return frame_instant(scene, frame).step == last ||
+           (scene.camera.shutter > 0 && closing_instant(scene, frame).step == last) ||
+           (scene.render.channels.motion && !has_frame(scene, frame + 1));
+}
+
+/// How a frame that has another hash differs from those that would be made of a scene.
+std::string other_frame(const Scene& scene, const render::ImageInfo& there,
+                        const render::FrameInfo& here) {
+    const bool same_scene = is_frame_of(scene, there, here.frame);
+    if (same_scene && there.picture_version != here.picture_version)
+        return fmt::format("is a frame of picture version {}, this program makes version {}",
+                           there.picture_version, here.picture_version);
+    if (same_scene && there.motion_version != here.motion_version)
+        return fmt::format("shows bodies moved by motion version {}, here by version {}",
+                           there.motion_version, here.motion_version);
+    return fmt::format("is a frame of another scene (hash {}, here {})", there.scene_hash,
+                       here.scene_hash);
+}
+
+}  // namespace
+
+void create_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+        throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+std::string require_folder_of(const Scene& scene, const fs::path& folder, Replace replace) {
+    const fs::path file = folder / kSceneFile;
+    if (replace == Replace::kAll || !fs::exists(file)) return {};
+    const std::string other = read_text(file);
+    std::string difference = first_difference(other, scene.effective);
+    if (difference.empty()) return {};
+    if (replace == Replace::kOtherLooks) {
+        const std::string motion = first_motion_difference(other, scene.effective);
+        // The name, which comes first, is that of the files.
+        if (motion.empty() && !difference.starts_with("scene.")) return difference;
+        if (!motion.empty()) difference = motion;
+    }
+    throw InputError(
+        fmt::format("{}: holds frames of another scene: {}; choose another folder, or --overwrite",
+                    folder.string(), difference));
+}
+
+std::string hash_of_frame(const Scene& scene, int frame, int picture_version, int motion_version) {
+    return frame_hash(shows_end(scene, frame) ? scene.effective : without_duration(scene.effective),
+                      picture_version, motion_version);
+}
+
+bool is_frame_of(const Scene& scene, const render::ImageInfo& there, int frame) {
+    const int picture = there.picture_version, motion = there.motion_version;
+    // The second is that of frames which were made before duration was left out.
+    return there.scene_hash == hash_of_frame(scene, frame, picture, motion) ||
+           there.scene_hash == frame_hash(scene.effective, picture, motion);
+}
+
+bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
+             Replace replace) {
+    if (!fs::exists(files.exr)) return false;
+    render::ImageInfo there;
+    try {
+        there = render::read_image_info(files.exr);
+    } catch (const InputError&) {
+        if (replace != Replace::kAll) throw;
+    }
+    const bool is_ours = there.picture_version == info.picture_version &&
+                         there.motion_version == info.motion_version;
+    if (is_ours && is_frame_of(scene, there, info.frame)) return fs::exists(files.preview);
+    if (replace == Replace::kAll) return false;
+    if (replace == Replace::kOtherLooks && is_ours) return false;
+    throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",
+                                 files.exr.string(), other_frame(scene, there, info)));
+}
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,285 @@
+#include "scenes/film/movie.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/file/partial_file.hpp"
+#include "render/file/image_info.hpp"
+#include "scenes/film/film_folder.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/signals.hpp"
+
+extern char** environ;
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path preview_file(const Scene& scene, const fs::path& folder, int frame) {
+    return folder / "preview" / fmt::format("{}.{:04}.png", scene.name, frame);
+}
+
+/// The number in NAME.0042.png; none of another file.
+std::optional<int> preview_number(const std::string& file, const std::string& name) {
+    const std::string_view end = ".png";
+    if (!file.starts_with(name + ".") || !file.ends_with(end)) return std::nullopt;
+    const char* const first = file.data() + name.size() + 1;
+    const char* const last = file.data() + file.size() - end.size();
+    int number = 0;
+    const auto [at, error] = std::from_chars(first, last, number);
+    // Four digits at least, and no sign.
+    if (error != std::errc() || at != last || last - first < 4 || *first == '-')
+        return std::nullopt;
+    return number;
+}
+
+/// From one preview to the next, the same all along.
+int stride_of(const std::vector<int>& numbers, const fs::path& folder) {
+    if (numbers.size() < 2)
+        throw InputError(fmt::format("{}: holds {} of a film's frames: expected two or more",
+                                     folder.string(), numbers.size()));
+    int stride = numbers[1] - numbers[0];
+    for (std::size_t i = 2; i < numbers.size(); ++i)
+        stride = std::min(stride, numbers[i] - numbers[i - 1]);
+    for (std::size_t i = 1; i < numbers.size(); ++i)
+        if (numbers[i] - numbers[i - 1] != stride)
+            throw InputError(
+                fmt::format("{}: the preview of frame {} is missing, which the same command that "
+                            "made the others makes",
+                            folder.string(), numbers[i - 1] + stride));
+    return stride;
+}
+
+using Size = std::array<unsigned, 2>;
+
+/// By the header of a PNG file; content checks are ffmpeg's.
+Size size_of(const std::string& png, const fs::path& file) {
+    const auto number = [&](std::size_t at) {
+        unsigned value = 0;
+        for (std::size_t i = at; i < at + 4; ++i)
+            value = value << 8 | static_cast<unsigned char>(png[i]);
+        return value;
+    };
+    if (png.size() < 24 || !png.starts_with("\x89PNG\r\n\x1a\n"))
+        throw InputError(fmt::format("{}: is no PNG picture", file.string()));
+    return {number(16), number(20)};
+}
+
+std::string read_file(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream bytes;
+    bytes << in.rdbuf();
+    if (!in) throw RunError(fmt::format("{}: cannot be read", file.string()));
+    return bytes.str();
+}
+
+/// A frame that is there besides its preview is one of the scene.
+void require_frame_of(const Scene& scene, const fs::path& folder, int frame) {
+    const fs::path file = folder / "frames" / fmt::format("{}.{:04}.exr", scene.name, frame);
+    if (!fs::exists(file)) return;
+    const render::ImageInfo there = render::read_image_info(file);
+    if (!is_frame_of(scene, there, frame))
+        throw InputError(
+            fmt::format("{}: is a frame of another scene than {} of this folder; render it again",
+                        file.string(), kSceneFile));
+}
+
+/// A child process that reads what is sent to it. A socket instead of a pipe: one whose reader is
+/// gone is an error of the call and no signal.
+class Child {
+  public:
+    explicit Child(std::vector<std::string> words) {
+        int ends[2];
+        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+            throw RunError(fmt::format("no socket: {}", std::strerror(errno)));
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+        std::vector<char*> arguments;
+        for (std::string& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        const int error =
+            posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        close(ends[1]);
+        socket_ = ends[0];
+        if (error == 0) return;
+        close(socket_);
+        throw RunError(fmt::format("{}: {}", words[0], std::strerror(error)));
+    }
+    ~Child() {
+        if (socket_ >= 0) close(socket_);
+        if (process_ <= 0) return;
+        kill(process_, SIGKILL);
+        wait();
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    /// @return false: it reads no more
+    bool send(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+            if (sent < 0 && errno == EINTR) continue;
+            if (sent < 0) return false;
+            bytes.remove_prefix(static_cast<std::size_t>(sent));
+        }
+        return true;
+    }
+    /// Ends its input and waits. @return it has succeeded
+    bool finish() {
+        close(socket_);
+        socket_ = -1;
+        return wait() == 0;
+    }
+
+  private:
+    int wait() {
+        int status = 0;
+        while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+        }
+        process_ = 0;
+        return status;
+    }
+
+    pid_t process_ = 0;
+    int socket_ = -1;
+};
+
+/// What a player takes for sRGB: the previews' values, in the colour difference signals of HDTV.
+constexpr const char* kFilter =
+    "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+
+std::vector<std::string> ffmpeg_words(double frames_per_second, const fs::path& output) {
+    return {"ffmpeg",
+            "-hide_banner",
+            "-loglevel",
+            "error",
+            "-xerror",
+            "-y",
+            "-f",
+            "image2pipe",
+            "-framerate",
+            toml_text(frames_per_second),
+            "-c:v",
+            "png",
+            "-i",
+            "pipe:0",
+            "-vf",
+            kFilter,
+            "-c:v",
+            "libx264",
+            "-crf",
+            "18",
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "iec61966-2-1",
+            "-movflags",
+            "+faststart",
+            "-f",
+            "mp4",
+            "file:" + fs::absolute(output).string()};
+}
+
+}  // namespace
+
+std::vector<int> preview_numbers(const Scene& scene, const fs::path& folder) {
+    std::vector<int> numbers;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder / "preview", error))
+        if (const auto number = preview_number(entry.path().filename().string(), scene.name))
+            numbers.push_back(*number);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
+fs::path movie_file(const Scene& scene, const fs::path& folder) {
+    return folder / (scene.name + ".mp4");
+}
+
+bool is_movie_current(const Scene& scene, const fs::path& folder) {
+    const fs::path movie = movie_file(scene, folder);
+    if (!fs::exists(movie)) return false;
+    const auto made = fs::last_write_time(movie);
+    const std::vector<int> numbers = preview_numbers(scene, folder);
+    return std::none_of(numbers.begin(), numbers.end(), [&](int number) {
+        return fs::last_write_time(preview_file(scene, folder, number)) > made;
+    });
+}
+
+bool has_ffmpeg() {
+    const char* const path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (access((fs::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
+    return false;
+}
+
+MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<int> numbers = preview_numbers(scene, folder);
+    MovieReport report;
+    report.file = movie_file(scene, folder);
+    report.frames = numbers.size();
+    report.frames_per_second = scene.render.frames_per_second / stride_of(numbers, folder);
+    for (const int number : numbers) require_frame_of(scene, folder, number);
+    if (!has_ffmpeg())
+        throw RunError(
+            fmt::format("{}: needs ffmpeg, which is not installed (Debian's package ffmpeg)",
+                        report.file.string()));
+
+    PartialFile output(report.file);
+    Child ffmpeg(ffmpeg_words(report.frames_per_second, output.partial()));
+    Progress progress("filming", "frames", numbers.size(), quiet);
+    std::optional<Size> size;
+    bool reads = true;
+    try {
+        for (std::size_t i = 0; i < numbers.size() && reads; ++i) {
+            if (stop_requested()) throw Stopped();
+            const fs::path file = preview_file(scene, folder, numbers[i]);
+            const std::string png = read_file(file);
+            const Size here = size_of(png, file);
+            if (!size) size = here;
+            if (here != *size)
+                throw InputError(fmt::format("{}: has {}x{} pixels, the first preview {}x{}",
+                                             file.string(), here[0], here[1], (*size)[0],
+                                             (*size)[1]));
+            reads = ffmpeg.send(png);
+            progress.update(i + 1);
+        }
+        const bool succeeded = ffmpeg.finish();
+        if (stop_requested()) throw Stopped();
+        if (!succeeded || !reads)
+            throw RunError(
+                fmt::format("{}: ffmpeg failed; it says why above", report.file.string()));
+    } catch (...) {
+        output.remove();
+        throw;
+    }
+    output.publish();
+    report.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return report;
+}
+
+}  // namespace tesserae::scenes

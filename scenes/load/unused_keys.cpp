@@ -1,0 +1,71 @@
+#include "render/picture_needs.hpp"
+#include "scenes/load/load_parts.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// Remarks on the keys of one table.
+class Unused {
+  public:
+    Unused(TableReader& reader, std::vector<std::string>& lines) : reader_(reader), lines_(lines) {}
+
+    void operator()(bool is_unused, const char* key, const char* why) {
+        if (!is_unused) return;
+        std::string line = reader_.remark(key, fmt::format("changes nothing: {}", why));
+        if (!line.empty()) lines_.push_back(std::move(line));
+    }
+
+  private:
+    TableReader& reader_;
+    std::vector<std::string>& lines_;
+};
+
+void check_render(Unused unused, const Scene& scene) {
+    const render::Settings& s = scene.render;
+    const render::PictureNeeds needs = render::needs_of(
+        {scene.bodies, scene.appearance, scene.materials, scene.camera, scene.lights, s});
+    const bool is_path = s.integrator == render::Integrator::kPath;
+    unused(!is_path && !needs.bounce_rays, "bounces",
+           "integrator = \"direct\", and nothing that is seen is a mirror or glass");
+    unused(!is_path, "clamp_indirect", "integrator = \"direct\" has no indirect light");
+    unused(s.noise_target == 0, "max_samples", "noise_target = 0: every pixel has `samples`");
+    unused(s.intersector == render::Intersector::kAnalytic, "max_steps",
+           "intersector = \"analytic\" takes no steps");
+    const bool one = s.most_samples() == 1;
+    unused(one, "filter", "one sample, which is at the pixel's centre");
+    unused(one, "filter_width", "one sample, which is at the pixel's centre");
+}
+
+void check_material(Unused unused, const render::Material& m) {
+    using Kind = render::MaterialKind;
+    unused(m.kind != Kind::kGlass, "ior", "kind is not \"glass\"");
+    unused(m.kind != Kind::kRough, "roughness", "kind is not \"rough\"");
+    const bool is_plain = m.pattern == render::Pattern::kNone;
+    unused(is_plain, "pattern_albedo", "the material has no pattern");
+    unused(is_plain, "pattern_size", "the material has no pattern");
+}
+
+}  // namespace
+
+void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene) {
+    std::vector<std::string>& lines = scene.unused;
+    const auto tables = root.tables("material");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        TableReader reader(*tables[i], origin, fmt::format("material {}", i));
+        // The first is the default's.
+        check_material({reader, lines}, scene.materials[i + 1]);
+    }
+    if (const auto* table = root.table("camera")) {
+        TableReader reader(*table, origin, "[camera]");
+        Unused unused(reader, lines);
+        unused(scene.camera.aperture == 0, "focus_distance", "aperture = 0: all is sharp");
+        unused(!scene.physics && scene.camera_keys.empty() && scene.camera.shutter > 0, "shutter",
+               "a still without [physics] and [[camera.key]]: nothing moves");
+    }
+    if (const auto* table = root.table("render")) {
+        TableReader reader(*table, origin, "[render]");
+        check_render({reader, lines}, scene);
+    }
+}
+
+}  // namespace tesserae::scenes

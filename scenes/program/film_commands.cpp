@@ -1,0 +1,255 @@
+#include "scenes/program/film_commands.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/file/file_writer.hpp"
+#include "parallel/threads.hpp"
+#include "parallel/trace.hpp"
+#include "scenes/film/draft.hpp"
+#include "scenes/film/film.hpp"
+#include "scenes/film/movie.hpp"
+#include "scenes/film/simulate.hpp"
+#include "scenes/plan/cost.hpp"
+#include "scenes/plan/in_slice.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/shell_word.hpp"
+#include "scenes/process/signals.hpp"
+#include "scenes/program/work.hpp"
+#include "scenes/timeline.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json to_json(const SimulateReport& r) {
+    return {{"first_step", r.first_step},
+            {"last_step", r.last_step},
+            {"rows", r.rows},
+            {"seconds", r.seconds}};
+}
+
+Json to_json(const FilmReport& r) {
+    return {{"frames", r.frames.string()},
+            {"rendered", r.rendered},
+            {"copied", r.copied},
+            {"kept", r.kept},
+            {"view_rays", r.stats.view_rays},
+            {"shadow_rays", r.stats.shadow_rays},
+            {"bounce_rays", r.stats.bounce_rays},
+            {"invalid_samples", r.stats.invalid_samples},
+            {"clamped_pixels", r.stats.clamped_pixels},
+            {"distance_evaluations", r.stats.distance_evaluations},
+            {"seconds", r.seconds}};
+}
+
+Json to_json(const MovieReport& r) {
+    return {{"file", r.file.string()},
+            {"frames", r.frames},
+            {"frames_per_second", r.frames_per_second},
+            {"seconds", r.seconds}};
+}
+
+std::string simulated_text(const SimulateReport& r, const fs::path& file) {
+    if (r.first_step == r.last_step) return fmt::format("{}: complete already", file.string());
+    return fmt::format("{}: steps {} to {}, {} stored, {}", file.string(), r.first_step,
+                       r.last_step, r.rows, duration_text(r.seconds));
+}
+
+std::string filmed_text(const FilmReport& r) {
+    const std::string copied =
+        r.copied > 0 ? fmt::format("{} copied (the same as before), ", r.copied) : "";
+    return fmt::format("{} frames rendered, {}{} kept, {}\nframes:  {}\npreview: {}", r.rendered,
+                       copied, r.kept, duration_text(r.seconds), r.frames.string(),
+                       r.preview.string());
+}
+
+std::string movie_text(const MovieReport& r) {
+    return fmt::format("film:    {} ({} frames, {:.4g} a second)", r.file.string(), r.frames,
+                       r.frames_per_second);
+}
+
+/// simulate(), and the trace of it where one is asked for.
+SimulateReport traced_simulate(const CommandLine& line, const Work& work, const fs::path& file,
+                               bool overwrite) {
+    std::optional<parallel::Trace> trace;
+    if (!line.trace.empty()) {
+        trace.emplace();
+        // Empty at first, so that a path that cannot be written shows before the work.
+        write_file(line.trace, trace->json());
+    }
+    const SimulateReport report = simulate(work.scene, work.plan, file, line.store_every, overwrite,
+                                           line.quiet, trace ? &*trace : nullptr);
+    if (trace) write_file(line.trace, trace->json());
+    return report;
+}
+
+/// A command that films: what the user asked for, or a draft of it.
+class Filming {
+  public:
+    explicit Filming(const CommandLine& line)
+        : line_(line),
+          is_run_(line.command == "run"),
+          replace_(line.overwrite ? Replace::kAll
+                   : is_run_      ? Replace::kOtherLooks
+                                  : Replace::kNothing),
+          folder_(line.draft ? line.output / "draft" : line.output),
+          trajectory_(line.trajectory),
+          work_(line_) {
+        if (line.draft) {
+            for (std::string& set : draft_overrides(work_.scene.render))
+                line_.sets.push_back(std::move(set));
+            work_ = Work(line_);
+        }
+        frames_ = parse_frames(line.frames, frame_count(work_.scene));
+        if (line.draft && line.frames.empty())
+            std::erase_if(frames_, [](int frame) { return frame % kDraftStride != 0; });
+        require_memory(work_.plan, work_.scene);
+    }
+
+    void operator()() {
+        Json json = {{"scene", scene().name}, {"hash", scene().hash}, {"threads", line_.threads}};
+        std::string text;
+        FilmReport filmed;
+        parallel::Threads(line_.threads).run([&] {
+            const bool simulates =
+                trajectory_.empty() && (is_run_ ? scene().physics.has_value() : work_.plan.moves);
+            tell_changed_look();
+            if (is_run_) tell_cost();
+            if (simulates) text = simulated(json["simulate"]) + "\n";
+            if (is_run_) tell_slice();
+            filmed = film(scene(), frames_, trajectory_, folder_, replace_, line_.quiet);
+        });
+        json["render"] = to_json(filmed);
+        text += filmed_text(filmed);
+        if (is_run_) {
+            text += movie(json);
+            write_file(folder_ / "report.json", json.dump(2) + "\n");
+        }
+        print_result(line_, json, text);
+    }
+
+  private:
+    const Scene& scene() const { return work_.scene; }
+
+    void tell(const std::string& text) const {
+        if (!line_.quiet) fmt::print(stderr, "tesserae: {}\n", text);
+    }
+
+    void tell_changed_look() const {
+        const std::string change = require_folder_of(scene(), folder_, replace_);
+        if (!change.empty())
+            tell(fmt::format("{}: {}: frames that look otherwise are rendered again",
+                             folder_.string(), change));
+    }
+
+    /// What a run from nothing will cost.
+    void tell_cost() const {
+        if (line_.quiet) return;
+        if (!line_.draft)
+            for (const std::string& warning : work_.plan.warnings)
+                tell(fmt::format("warning: {}", warning));
+        if (fs::exists(folder_ / "frames") || fs::exists(line_.output / "trajectory.h5")) return;
+        constexpr double kSeconds = 1;
+        const Cost cost = measure_cost(scene(), work_.plan, {}, frames_, kSeconds);
+        tell(
+            fmt::format("about {} to simulate and {} to render{}",
+                        duration_text(cost.simulate_seconds), duration_text(cost.render_seconds),
+                        cost.guessed.empty() ? "" : ", partly a guess (tesserae plan tells more)"));
+    }
+
+    void tell_slice() const {
+        if (line_.quiet || frames_.empty()) return;
+        for (const std::string& warning : look_at_slice(scene(), trajectory_, frames_).warnings)
+            tell(fmt::format("warning: {}", warning));
+    }
+
+    /// What is there serves where it can. A draft shares the trajectory with the film.
+    std::string simulated(Json& json) {
+        create_folder(folder_);
+        trajectory_ = line_.output / "trajectory.h5";
+        const Served served = how_served(scene(), trajectory_, line_.store_every);
+        const std::string file = trajectory_.string();
+        SimulateReport report;
+        std::string text;
+        if (is_run_ && served == Served::kByMore) {
+            text = fmt::format("{}: kept", file);
+        } else {
+            // Of the same motion nothing is lost.
+            const bool anew = is_run_ && served == Served::kByOtherSteps;
+            if (anew)
+                tell(fmt::format("{}: lacks steps that the frames need: simulated again", file));
+            report = traced_simulate(line_, work_, trajectory_, line_.overwrite || anew);
+            text = simulated_text(report, trajectory_);
+        }
+        json = to_json(report);
+        json["trajectory"] = file;
+        return text;
+    }
+
+    /// The film of all frames, where they are there. @return a line
+    std::string movie(Json& json) {
+        const std::vector<int> there = preview_numbers(scene(), folder_);
+        const std::size_t count = static_cast<std::size_t>(frame_count(scene()));
+        const std::size_t wanted = line_.draft ? (count + kDraftStride - 1) / kDraftStride : count;
+        if (wanted < 2) return {};
+        if (there.size() != wanted)
+            return fmt::format("\nfilm:    not made: {} of {} frames are there", there.size(),
+                               wanted);
+        if (is_movie_current(scene(), folder_))
+            return fmt::format("\nfilm:    {}", movie_file(scene(), folder_).string());
+        if (!has_ffmpeg())
+            return fmt::format(
+                "\nfilm:    not made: ffmpeg is not installed; with it: tesserae film {}",
+                shell_word(folder_.string()));
+        const MovieReport report = make_movie(scene(), folder_, line_.quiet);
+        json["film"] = to_json(report);
+        return "\n" + movie_text(report);
+    }
+
+    CommandLine line_;
+    bool is_run_;
+    Replace replace_;
+    fs::path folder_, trajectory_;
+    Work work_;
+    std::vector<int> frames_;
+};
+
+}  // namespace
+
+void simulate_command(const CommandLine& line) {
+    const Work work(line);
+    require_memory(work.plan, work.scene);
+    stop_gracefully_on_signals();
+    SimulateReport report;
+    parallel::Threads(line.threads).run([&] {
+        report = traced_simulate(line, work, line.output, line.overwrite);
+    });
+    Json json = to_json(report);
+    json["trajectory"] = line.output.string();
+    json["hash"] = work.scene.motion_hash;
+    print_result(line, json, simulated_text(report, line.output));
+}
+
+void run_command(const CommandLine& line) {
+    Filming filming(line);
+    stop_gracefully_on_signals();
+    filming();
+}
+
+void movie_command(const CommandLine& line) {
+    const fs::path text = line.file / kSceneFile;
+    if (!fs::exists(text))
+        throw InputError(fmt::format(
+            "{}: has no {}: expected a folder that tesserae run or tesserae render has made",
+            line.file.string(), kSceneFile));
+    const Scene scene = load_scene(text, {});
+    stop_gracefully_on_signals();
+    const MovieReport report = make_movie(scene, line.file, line.quiet);
+    print_result(line, to_json(report), movie_text(report));
+}
+
+}  // namespace tesserae::scenes
