@@ -226,6 +226,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App& film = *app.add_subcommand("film", "an MP4 of a folder's previews, by ffmpeg");
     add_common(film, line);
     film.add_option("folder", line.file, "that run or render has made")->required();
+
     add_view(app, line);
 
     CLI::App& plan =

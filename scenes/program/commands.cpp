@@ -19,6 +19,7 @@
 #include "scenes/program/film_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/program/tool_commands.hpp"
+#include "scenes/program/view_command.hpp"
 #include "scenes/program/work.hpp"
 #include "scenes/timeline.hpp"
 

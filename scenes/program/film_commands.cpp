@@ -7,7 +7,6 @@
 #include "core/file/file_writer.hpp"
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
-#include "scenes/compare/file_kind.hpp"
 #include "scenes/film/draft.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/film/movie.hpp"
@@ -19,8 +18,6 @@
 #include "scenes/process/signals.hpp"
 #include "scenes/program/work.hpp"
 #include "scenes/timeline.hpp"
-#include "scenes/trajectory/trajectory.hpp"
-#include "scenes/view/view.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -230,12 +227,6 @@ class Filming {
     std::vector<int> frames_;
 };
 
-/// The scene that `view` shows: that of a scene file, or the one in a trajectory.
-Scene viewed_scene(const CommandLine& line) {
-    if (kind_of(line.file) != FileKind::kTrajectory) return load_scene(line.file, line.sets);
-    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
-}
-
 }  // namespace
 
 void simulate_command(const CommandLine& line) {
@@ -256,38 +247,6 @@ void run_command(const CommandLine& line) {
     Filming filming(line);
     stop_gracefully_on_signals();
     filming();
-}
-
-void view_command(const CommandLine& line) {
-    const Work work(viewed_scene(line), line);
-    const Scene& scene = work.scene;
-    require_page_of(scene, line.output, line.overwrite);
-    require_memory(work.plan, scene);
-    stop_gracefully_on_signals();
-
-    const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
-    fs::path trajectory = is_trajectory ? line.file : fs::path();
-    Json json = {{"scene", scene.name}, {"hash", scene.hash}};
-    ViewOptions options;
-    options.near_slice = line.near_slice;
-    options.quiet = line.quiet;
-    ViewReport report;
-    parallel::Threads(line.threads).run([&] {
-        if (!is_trajectory && work.plan.moves) {
-            trajectory = fs::path(line.output).replace_extension(".h5");
-            json["simulate"] = to_json(traced_simulate(line, work, trajectory, line.overwrite));
-            json["simulate"]["trajectory"] = trajectory.string();
-        }
-        report = write_view(scene, trajectory, line.output, options);
-    });
-    json["page"] = line.output.string();
-    json["bodies"] = report.bodies, json["moments"] = report.moments;
-    json["bytes"] = report.bytes, json["seconds"] = report.seconds;
-    print_result(
-        line, json,
-        fmt::format("{}: {} bodies, {} moments, {:.1f} MB, {}", line.output.string(), report.bodies,
-                    report.moments, 1e-6 * static_cast<double>(report.bytes),
-                    duration_text(report.seconds)));
 }
 
 void movie_command(const CommandLine& line) {

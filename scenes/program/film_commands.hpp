@@ -11,9 +11,6 @@ void simulate_command(const CommandLine& line);
 /// then makes the film.
 void run_command(const CommandLine& line);
 
-/// Writes the page to look around in; a scene that moves is simulated first.
-void view_command(const CommandLine& line);
-
 /// Makes the film of a folder's previews.
 void movie_command(const CommandLine& line);
 

@@ -1,0 +1,58 @@
+#include "scenes/program/view_command.hpp"
+
+#include "core/error.hpp"
+#include "parallel/threads.hpp"
+#include "scenes/compare/file_kind.hpp"
+#include "scenes/film/simulate.hpp"
+#include "scenes/process/progress.hpp"
+#include "scenes/process/signals.hpp"
+#include "scenes/program/work.hpp"
+#include "scenes/trajectory/trajectory.hpp"
+#include "scenes/view/view.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The scene that is shown: that of a scene file, or the one in a trajectory.
+Scene viewed_scene(const CommandLine& line, bool is_trajectory) {
+    if (!is_trajectory) return load_scene(line.file, line.sets);
+    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
+}
+
+}  // namespace
+
+void view_command(const CommandLine& line) {
+    const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
+    const Scene scene = viewed_scene(line, is_trajectory);
+    const Plan plan = make_plan(scene, line.threads);
+    require_page_of(scene, line.output, line.overwrite);
+    require_memory(plan, scene);
+    stop_gracefully_on_signals();
+
+    fs::path trajectory = is_trajectory ? line.file : fs::path();
+    ViewOptions options;
+    options.near_slice = line.near_slice;
+    options.quiet = line.quiet;
+    ViewReport report;
+    parallel::Threads(line.threads).run([&] {
+        if (!is_trajectory && plan.moves) {
+            trajectory = fs::path(line.output).replace_extension(".h5");
+            simulate(scene, plan, trajectory, 0, line.overwrite, line.quiet);
+        }
+        report = write_view(scene, trajectory, line.output, options);
+    });
+
+    const std::string page = line.output.string();
+    nlohmann::ordered_json json = {{"scene", scene.name}, {"hash", scene.hash}, {"page", page}};
+    if (!trajectory.empty()) json["trajectory"] = trajectory.string();
+    json["bodies"] = report.bodies, json["moments"] = report.moments;
+    json["bytes"] = report.bytes, json["seconds"] = report.seconds;
+    print_result(
+        line, json,
+        fmt::format("{}: {} bodies, {} moments, {:.1f} MB, {}", page, report.bodies, report.moments,
+                    1e-6 * static_cast<double>(report.bytes), duration_text(report.seconds)));
+}
+
+}  // namespace tesserae::scenes
