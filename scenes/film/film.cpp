@@ -12,6 +12,7 @@
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
+#include "render/file/whole_image.hpp"
 #include "render/picture_needs.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
@@ -60,7 +61,8 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
     } catch (const InputError&) {
         if (!overwrite) throw;
     }
-    if (there.scene_hash == info.scene_hash) return fs::exists(files.preview);
+    if (there.scene_hash == info.scene_hash)
+        return fs::exists(files.preview) && render::is_whole_image(files.exr);
     if (overwrite) return false;
     throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",
                                  files.exr.string(), other_frame(scene, there, info)));

@@ -102,6 +102,31 @@ void add_compare(CLI::App& app, CommandLine& line) {
         ->expected(2);
 }
 
+void add_farm(CLI::App& app, CommandLine& line, Typed& typed) {
+    CLI::App& submit = *app.add_subcommand("submit", "job scripts of a film for Slurm or any farm");
+    add_scene(submit, line);
+    add_output(submit, line, "folder that all nodes see: job scripts, trajectory, frames");
+    add_picture(submit, line, typed);
+    FarmRequest& farm = line.farm;
+    const auto count = CLI::Range(1, 10'000'000);
+    submit.add_flag("--now", farm.now, "submit to Slurm, not only write the scripts");
+    submit.add_option("--for", farm.kind, "slurm, or commands: one a task, for any other farm")
+        ->check(CLI::IsMember({"slurm", "commands"}));
+    submit.add_option("--partition", farm.partition, "Slurm's partition");
+    submit.add_option("--account", farm.account, "Slurm's account");
+    submit.add_option("--max-running", farm.max_running, "tasks at once")->check(count);
+    submit.add_option("--cores", farm.cores, "of a task (default: 4)")->check(count);
+    submit.add_option("--chunk", farm.chunk, "frames of a task (default: some minutes of them)")
+        ->check(count);
+    submit.add_option("--sbatch", farm.sbatch, "any further option of sbatch")
+        ->allow_extra_args(false);
+
+    CLI::App& status = *app.add_subcommand(
+        "status", "frames complete, missing, invalid; exit status 0 only when complete");
+    add_common(status, line);
+    status.add_option("folder", line.file, "DIR of run, render or submit")->required();
+}
+
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.
 void append_overrides(const CLI::App& app, const Typed& typed, std::vector<std::string>& sets) {
     const auto given = [&](const char* name) {
@@ -190,7 +215,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         ->required()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
 
-    app.add_subcommand("submit", "not yet built")->allow_extras()->group("");
+    add_farm(app, line, typed);
 
     if (argc > 1) require_known_command(app, argv[1]);
     try {
@@ -205,8 +230,6 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     const CLI::App& chosen = *app.get_subcommands().front();
     line.command = chosen.get_name();
     if (line.command == "generate") require_known_generator(line.generator);
-    if (line.command == "submit")
-        throw InputError(fmt::format("tesserae {}: not yet built", line.command));
     append_overrides(chosen, typed, line.sets);
     if (line.threads == 0) line.threads = parallel::granted_cores();
     return line;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/farm/request.hpp"
+
 namespace tesserae::scenes {
 
 /// What the user typed, checked as far as it can be without the scene.
@@ -20,6 +22,7 @@ struct CommandLine {
     std::string generator;
     std::uint64_t bodies = 0;  ///< to generate
     int threads = 0;
+    FarmRequest farm;  ///< of submit
     bool quiet = false, json = false, overwrite = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.
     std::vector<std::string> sets;

@@ -19,6 +19,7 @@
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
+#include "scenes/program/farm_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/timeline.hpp"
 
@@ -202,6 +203,8 @@ int execute(const CommandLine& line) {
     if (line.command == "info") info_command(line);
     if (line.command == "hash") hash_command(line);
     if (line.command == "diff") status = diff_command(line);
+    if (line.command == "submit") submit_command(line);
+    if (line.command == "status") status = status_command(line);
     if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw RunError("standard output: cannot be written");
