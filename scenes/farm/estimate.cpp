@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/picture_needs.hpp"
+
 namespace tesserae::scenes {
 namespace {
 
@@ -32,13 +34,20 @@ int minutes_of(double seconds) {
 
 }  // namespace
 
+double frame_core_seconds(const Scene& scene) {
+    const render::Settings& r = scene.render;
+    const render::Crop w = r.window();
+    const double rays = static_cast<double>(w.x1 - w.x0) * (w.y1 - w.y0) *
+                        static_cast<double>(render::most_view_rays(r));
+    const bool is_path = r.integrator == render::Integrator::kPath;
+    return rays * (kViewRaySeconds + (is_path ? r.bounces * kBounceSeconds : 0));
+}
+
 FarmEstimate estimate_farm(const Scene& scene, std::size_t frames, const FarmRequest& request) {
     FarmEstimate e;
     e.cores = request.cores > 0 ? request.cores : kUsualCores;
     const Plan plan = make_plan(scene, e.cores);
-    const bool is_path = scene.render.integrator == render::Integrator::kPath;
-    const double ray = kViewRaySeconds + (is_path ? scene.render.bounces * kBounceSeconds : 0);
-    e.frame_seconds = static_cast<double>(plan.view_rays) / plan.frames * ray / e.cores;
+    e.frame_seconds = frame_core_seconds(scene) / e.cores;
     // Simulating is not counted on more cores: small scenes do not use them.
     e.simulate_seconds = static_cast<double>(plan.steps) *
                          static_cast<double>(plan.movable_bodies) * kBodyStepSeconds;

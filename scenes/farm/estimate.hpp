@@ -20,6 +20,9 @@ struct FarmEstimate {
     std::uint64_t memory_mib = 0;  ///< of a task, with the margin
 };
 
+/// What a frame takes [s] on one core, without a margin: from its view rays alone.
+double frame_core_seconds(const Scene& scene);
+
 /// @param frames   that will be rendered
 FarmEstimate estimate_farm(const Scene& scene, std::size_t frames, const FarmRequest& request);
 

@@ -14,6 +14,7 @@
 #include "render/file/image_info.hpp"
 #include "render/file/whole_image.hpp"
 #include "render/picture_needs.hpp"
+#include "scenes/farm/join.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
@@ -234,7 +235,8 @@ std::string invalid_samples_text(const render::FrameStats& stats, const Scene& s
 }
 
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
-                const fs::path& folder, bool overwrite, bool quiet) {
+                const fs::path& folder, bool overwrite, bool quiet,
+                std::optional<render::FramePart> part) {
     const auto begin = std::chrono::steady_clock::now();
     require_folder_of(scene, folder, overwrite);
     Poses poses(scene, frames, trajectory);
@@ -255,6 +257,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     std::optional<render::Mattes> mattes;
     if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);
 
+    const int parts = parts_of_frame(scene);
     std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -271,17 +274,28 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         Exposure exposure(scene, poses, info.frame);
         render::Picture picture = exposure.picture(scene, info.frame);
         if (mattes) picture.mattes = &*mattes;
+        const auto warn = [&](const render::FrameStats& stats) {
+            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
+                                            clamped_pixels_text(stats, scene, info.frame)})
+                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
+            report.stats += stats;
+        };
+        if (part) {
+            const auto stats = render::render_part(
+                picture, info, *part, part_file(files.exr, *part), overwrite, stop_requested());
+            if (stats) warn(*stats), ++report.parts;
+            progress.update(i + 1);
+            continue;
+        }
         if (shown && !render::needs_of(picture).moving_noise &&
             exposure.looks_like(shown->exposure, scene)) {
             render::copy_frame(shown->files, picture, info, files);
             ++report.copied;
         } else {
-            const render::FrameStats stats =
-                render::render_frame(picture, info, files.exr, files.preview, stop_requested());
-            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
-                                            clamped_pixels_text(stats, scene, info.frame)})
-                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
-            report.stats += stats;
+            warn(parts > 1
+                     ? render_in_parts(picture, info, files, parts, overwrite, stop_requested())
+                     : render::render_frame(picture, info, files.exr, files.preview,
+                                            stop_requested()));
             ++report.rendered;
             shown.emplace(Shown{std::move(exposure), files});
         }

@@ -18,6 +18,7 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr int kMaxThreads = 1024;
+constexpr int kMostTileParts = 100'000;
 
 /// Whole numbers of `text` between separators, exactly `count` of them.
 std::vector<int> numbers(const std::string& option, const std::string& text, char separator,
@@ -43,7 +44,7 @@ std::vector<int> numbers(const std::string& option, const std::string& text, cha
 
 /// Options of one subcommand, as typed.
 struct Typed {
-    std::string size, crop, integrator, intersector;
+    std::string size, crop, integrator, intersector, tiles;
     int samples = 0;
 };
 
@@ -121,10 +122,23 @@ void add_farm(CLI::App& app, CommandLine& line, Typed& typed) {
     submit.add_option("--sbatch", farm.sbatch, "any further option of sbatch")
         ->allow_extra_args(false);
 
+    CLI::App& join = *app.add_subcommand("join", "whole frames of the parts of render --tiles");
+    add_common(join, line);
+    join.add_option("folder", line.file, "DIR of render")->required();
+
     CLI::App& status = *app.add_subcommand(
         "status", "frames complete, missing, invalid; exit status 0 only when complete");
     add_common(status, line);
     status.add_option("folder", line.file, "DIR of run, render or submit")->required();
+}
+
+render::FramePart part_of(const std::string& text) {
+    const char* const expected = "K/N, the K-th of N parts, for example 3/8";
+    const auto v = numbers("--tiles", text, '/', 2, expected);
+    if (v[0] < 1 || v[0] > v[1] || v[1] > kMostTileParts)
+        throw InputError(fmt::format("--tiles {}: expected {}, 1 <= K <= N <= {}", text, expected,
+                                     kMostTileParts));
+    return {v[0], v[1]};
 }
 
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.
@@ -195,6 +209,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     add_output(render, line, "folder for the frames and previews");
     render.add_option("--trajectory", line.trajectory,
                       "made by tesserae simulate (default: simulates first where bodies move)");
+    render.add_option("--tiles", typed.tiles,
+                      "K/N: the K-th of N parts of each frame, for tesserae join");
     add_picture(render, line, typed);
 
     CLI::App& plan =
@@ -230,6 +246,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     const CLI::App& chosen = *app.get_subcommands().front();
     line.command = chosen.get_name();
     if (line.command == "generate") require_known_generator(line.generator);
+    if (!typed.tiles.empty()) line.tiles = part_of(typed.tiles);
     append_overrides(chosen, typed, line.sets);
     if (line.threads == 0) line.threads = parallel::granted_cores();
     return line;

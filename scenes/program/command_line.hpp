@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "render/frame.hpp"
 #include "scenes/farm/request.hpp"
 
 namespace tesserae::scenes {
@@ -22,7 +24,8 @@ struct CommandLine {
     std::string generator;
     std::uint64_t bodies = 0;  ///< to generate
     int threads = 0;
-    FarmRequest farm;  ///< of submit
+    FarmRequest farm;                        ///< of submit
+    std::optional<render::FramePart> tiles;  ///< of render: a part of each frame
     bool quiet = false, json = false, overwrite = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.
     std::vector<std::string> sets;

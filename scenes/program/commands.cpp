@@ -154,11 +154,13 @@ void film_command(const CommandLine& line) {
             json["simulate"] = to_json(traced_simulate(line, work, trajectory));
             json["simulate"]["trajectory"] = trajectory.string();
         }
-        filmed = film(scene, frames, trajectory, line.output, line.overwrite, line.quiet);
+        filmed =
+            film(scene, frames, trajectory, line.output, line.overwrite, line.quiet, line.tiles);
     });
+    if (line.tiles) json["parts"] = filmed.parts;
     json["render"] = to_json(filmed);
     if (line.command == "run") write_file(line.output / "report.json", json.dump(2) + "\n");
-    print_result(line, json, filmed_text(filmed));
+    print_result(line, json, line.tiles ? parts_text(filmed, line.output) : filmed_text(filmed));
 }
 
 void plan_command(const CommandLine& line) {
@@ -204,6 +206,7 @@ int execute(const CommandLine& line) {
     if (line.command == "hash") hash_command(line);
     if (line.command == "diff") status = diff_command(line);
     if (line.command == "submit") submit_command(line);
+    if (line.command == "join") status = join_command(line);
     if (line.command == "status") status = status_command(line);
     if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "parallel/threads.hpp"
+#include "scenes/farm/join.hpp"
 #include "scenes/farm/scripts.hpp"
 #include "scenes/farm/status.hpp"
 #include "scenes/farm/submit.hpp"
@@ -58,6 +60,25 @@ void submit_command(const CommandLine& line) {
                                          : "to submit: bash " +
                                                shell_word((report.scripts / "submit.sh").string()));
     }
+}
+
+std::string parts_text(const FilmReport& report, const std::filesystem::path& folder) {
+    return fmt::format("{} parts rendered, {}\nonce all are there: tesserae join {}", report.parts,
+                       duration_text(report.seconds), shell_word(folder.string()));
+}
+
+int join_command(const CommandLine& line) {
+    JoinReport report;
+    parallel::Threads(line.threads).run([&] { report = join_folder(line.file); });
+    if (line.json)
+        fmt::print("{}\n",
+                   FarmJson({{"joined", report.joined}, {"missing", report.missing}}).dump());
+    else
+        fmt::print("{} frames joined\n", report.joined);
+    for (const std::string& missing : report.missing)
+        fmt::print(stderr, "tesserae: {} are missing: tesserae render --tiles makes them\n",
+                   missing);
+    return report.missing.empty() ? 0 : 1;
 }
 
 int status_command(const CommandLine& line) {
