@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
@@ -43,10 +44,17 @@ double cores_of_control_groups() {
     return least;
 }
 
+/// What Slurm has granted to this task: not every site binds tasks to their cores.
+int cores_of_slurm() {
+    const char* text = std::getenv("SLURM_CPUS_PER_TASK");
+    const int cores = text != nullptr ? std::atoi(text) : 0;
+    return cores > 0 ? cores : std::numeric_limits<int>::max();
+}
+
 }  // namespace
 
 int granted_cores() {
-    const int cores = cores_of_affinity();
+    const int cores = std::min(cores_of_affinity(), cores_of_slurm());
     const double quota = std::ceil(cores_of_control_groups());
     return quota < cores ? std::max(1, static_cast<int>(quota)) : cores;
 }

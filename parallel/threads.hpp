@@ -5,8 +5,8 @@
 
 namespace tesserae::parallel {
 
-/// Cores that this process may use: the least of its affinity mask and the cpu quotas of its
-/// control groups (versions 1 and 2), rounded up. At least 1.
+/// Cores that this process may use: the least of its affinity mask, the cpu quotas of its control
+/// groups (versions 1 and 2), rounded up, and Slurm's SLURM_CPUS_PER_TASK. At least 1.
 int granted_cores();
 
 /// A number of threads for parallel work, which may be more than the cores. Where several such

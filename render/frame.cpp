@@ -4,11 +4,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "core/error.hpp"
 #include "render/file/exr_writer.hpp"
+#include "render/file/part_file.hpp"
 #include "render/file/preview.hpp"
 #include "render/tile/tile_image.hpp"
 #include "render/tile/tiles.hpp"
@@ -31,6 +33,67 @@ struct Slot {
     PackedTile packed;
 };
 
+/// Of the tiles in the order of the source, half open.
+struct TileRange {
+    std::size_t begin = 0, end = 0;
+};
+
+/// Renders tiles on all threads.
+/// @param pack(image)   on any thread; write(slot)   in the order of the source
+template <class Pack, class Write>
+void render_tiles(const FrameScene& scene, const Crop& window, int tile_size,
+                  const TileRange& range, const std::atomic<bool>& stop, Pack&& pack,
+                  Write&& write) {
+    TileSource source(scene.slice(), window, tile_size);
+    for (std::size_t i = 0; i < range.begin; ++i) source.next();
+    std::size_t left = range.end - range.begin;
+
+    // Tiles start and end in the order of the source, whatever thread renders them. A slot is free
+    // again when its turn comes: the tiles under way are consecutive, and no more than the slots.
+    // (The frame owns the slots, since the pipeline forgets what is under way when a stage throws.)
+    std::vector<Slot> slots(tiles_in_flight(tile_size));
+    std::size_t turn = 0;
+    const auto next_tile = [&](tbb::flow_control& flow) -> Slot* {
+        if (stop.load(std::memory_order_relaxed)) throw Stopped();
+        std::optional<Tile> tile;
+        if (left > 0) tile = source.next();
+        if (!tile) {
+            flow.stop();
+            return nullptr;
+        }
+        --left;
+        Slot& slot = slots[turn++ % slots.size()];
+        slot.tile = *std::move(tile);
+        return &slot;
+    };
+    const auto render = [&](Slot* slot) {
+        slot->image = render_tile(scene, slot->tile, stop);
+        slot->packed = pack(slot->image);
+        return slot;
+    };
+    tbb::parallel_pipeline(
+        slots.size(), tbb::make_filter<void, Slot*>(tbb::filter_mode::serial_in_order, next_tile) &
+                          tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, render) &
+                          tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order,
+                                                        [&](Slot* slot) { write(*slot); }));
+}
+
+/// A whole part is there that would be made of the same; another is an error, unless it is to be
+/// replaced.
+bool is_part_done(const PartInfo& info, const std::filesystem::path& file, bool overwrite) {
+    if (!std::filesystem::exists(file)) return false;
+    try {
+        if (read_part_info(file).goes_with(info)) return true;
+    } catch (const InputError&) {
+        if (!overwrite) throw;
+    }
+    if (overwrite) return false;
+    throw InputError(
+        fmt::format("{}: is a part of another frame; choose another folder, or "
+                    "--overwrite",
+                    file.string()));
+}
+
 }  // namespace
 
 FrameStats render_frame(const Picture& picture, const FrameInfo& info,
@@ -40,46 +103,52 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const Crop window = settings.window();
     const Channels& channels = settings.channels;
     const FrameScene scene(picture, channels.color || channels.light || !preview.empty());
-    TileSource source(scene.slice(), window, settings.tile);
     ExrWriter image(exr, settings, window, info, picture.camera, scene.camera(), picture.mattes);
     std::optional<Preview> small;
     if (!preview.empty()) small.emplace(window, settings.exposure);
     FrameStats stats;
-
-    // Tiles start and end in the order of the source, whatever thread renders them. A slot is free
-    // again when its turn comes: the tiles under way are consecutive, and no more than the slots.
-    // (The frame owns the slots, since the pipeline forgets what is under way when a stage throws.)
-    std::vector<Slot> slots(tiles_in_flight(settings.tile));
-    std::size_t turn = 0;
-    const auto next_tile = [&](tbb::flow_control& flow) -> Slot* {
-        if (stop.load(std::memory_order_relaxed)) throw Stopped();
-        std::optional<Tile> tile = source.next();
-        if (!tile) {
-            flow.stop();
-            return nullptr;
-        }
-        Slot& slot = slots[turn++ % slots.size()];
-        slot.tile = *std::move(tile);
-        return &slot;
-    };
-    const auto render = [&](Slot* slot) {
-        slot->image = render_tile(scene, slot->tile, stop);
-        slot->packed = image.pack(slot->image);
-        return slot;
-    };
-    const auto write = [&](Slot* slot) {
-        image.write(slot->packed);
-        if (small) small->add(slot->image);
-        stats += slot->image.stats;
-    };
-    tbb::parallel_pipeline(
-        slots.size(), tbb::make_filter<void, Slot*>(tbb::filter_mode::serial_in_order, next_tile) &
-                          tbb::make_filter<Slot*, Slot*>(tbb::filter_mode::parallel, render) &
-                          tbb::make_filter<Slot*, void>(tbb::filter_mode::serial_in_order, write));
+    render_tiles(
+        scene, window, settings.tile, {0, SIZE_MAX}, stop,
+        [&](const TileImage& tile) { return image.pack(tile); },
+        [&](const Slot& slot) {
+            image.write(slot.packed);
+            if (small) small->add(slot.image);
+            stats += slot.image.stats;
+        });
 
     // The preview first: where the image exists, its preview does.
     if (small) small->write(preview);
     image.finish();
+    return stats;
+}
+
+std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& info,
+                                      const FramePart& part, const std::filesystem::path& file,
+                                      bool overwrite, const std::atomic<bool>& stop) {
+    const Settings& settings = picture.settings;
+    const Crop window = settings.window();
+    const Camera camera(picture.camera, settings.width, settings.height);
+    TilePacker packer(settings, window, info, picture.camera, camera, picture.mattes);
+    const PartInfo about = {part, window, packer.tiles(), packer.file_header()};
+    if (is_part_done(about, file, overwrite)) return {};
+
+    const FrameScene scene(picture, true);
+    PartWriter out(file, about);
+    Preview small(window, settings.exposure);
+    FrameStats stats;
+    const auto cut = [&](int number) {
+        return static_cast<std::uint64_t>(number) * about.tiles /
+               static_cast<std::uint64_t>(part.count);
+    };
+    render_tiles(
+        scene, window, settings.tile, {cut(part.number - 1), cut(part.number)}, stop,
+        [&](const TileImage& tile) { return packer.pack(tile); },
+        [&](const Slot& slot) {
+            out.write(slot.packed);
+            small.add(slot.image);
+            stats += slot.image.stats;
+        });
+    out.finish(small);
     return stats;
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 
 #include "render/picture.hpp"
 
@@ -14,5 +15,19 @@ namespace tesserae::render {
 FrameStats render_frame(const Picture& picture, const FrameInfo& info,
                         const std::filesystem::path& exr, const std::filesystem::path& preview,
                         const std::atomic<bool>& stop);
+
+/// Which run of a frame's tiles, in the order in which they are rendered: cut into `count` runs of
+/// equal length, to one tile.
+struct FramePart {
+    int number = 1, count = 1;  ///< 1 <= number <= count
+};
+
+/// Renders a part of a frame into a file from which, with the others, join_parts() makes what
+/// render_frame() would have made. A whole file of this part of this frame is kept.
+/// @return nothing if it was there
+/// @throws InputError   a part of another frame is there and not `overwrite`; else as render_frame
+std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& info,
+                                      const FramePart& part, const std::filesystem::path& file,
+                                      bool overwrite, const std::atomic<bool>& stop);
 
 }  // namespace tesserae::render

@@ -223,35 +223,62 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     return header;
 }
 
-}  // namespace
-
 /// A file in memory with the same header: what OpenEXR writes there for a tile is what the real
 /// file needs.
-struct ExrWriter::Packer {
+struct Packer {
     MemoryStream stream;
     Imf::TiledOutputFile tiles;
 
     explicit Packer(const Imf::Header& header) : tiles(stream, header, 0) {}
 };
 
+}  // namespace
+
 /// OpenEXR can compress on threads of its own, but only tiles that make a rectangle, and not those
-/// of a Hilbert curve as they come. So every thread compresses into a file of its own, and here the
+/// of a Hilbert curve as they come. So every thread compresses into a file of its own, and the
 /// results are put in a row, with the table that says where they are.
+struct TilePacker::Packers {
+    Imf::Header header;
+    std::string file_header;
+    std::uint64_t columns, tiles;
+    tbb::enumerable_thread_specific<Packer> of_thread;
+
+    explicit Packers(const Imf::Header& head)
+        : header(head), of_thread([this] { return Packer(header); }) {
+        const Packer first(header);
+        file_header.assign(first.stream.bytes.begin(), first.stream.bytes.end());
+        columns = static_cast<std::uint64_t>(first.tiles.numXTiles());
+        tiles = columns * static_cast<std::uint64_t>(first.tiles.numYTiles());
+    }
+};
+
+TilePacker::TilePacker(const Settings& settings, const Crop& window, const FrameInfo& info,
+                       const CameraDescription& description, const Camera& camera,
+                       const Mattes* mattes)
+    : channels_(settings.channels) {
+    if (places_of(channels_).empty())
+        throw InputError("render.channels = []: an image needs at least one channel");
+    packers_ =
+        std::make_unique<Packers>(header_of(settings, window, info, description, camera, mattes));
+}
+
+TilePacker::~TilePacker() = default;
+
+std::string TilePacker::file_header() const { return packers_->file_header; }
+
+std::uint64_t TilePacker::tiles() const { return packers_->tiles; }
+
+/// The file itself: tiles that were packed, and where they are.
 struct ExrWriter::File {
     Stream stream;
-    Imf::Header header;
     std::optional<Imf::TiledOutputFile> tiles;
-    std::uint64_t table;  ///< where the file holds the tiles' positions
-    int columns;
+    std::uint64_t table;                 ///< where the file holds the tiles' positions
     std::vector<std::uint64_t> offsets;  ///< of the tiles, by rows; 0 where none is written
-    tbb::enumerable_thread_specific<Packer> packers;
 
-    File(const std::filesystem::path& path, const Imf::Header& head)
-        : stream(path), header(head), packers([this] { return Packer(header); }) {
+    File(const std::filesystem::path& path, const Imf::Header& header, std::uint64_t count)
+        : stream(path), offsets(count) {
         // No threads of OpenEXR's own: tiles come from threads enough.
         tiles.emplace(stream, header, 0);
-        columns = tiles->numXTiles();
-        offsets.resize(static_cast<std::size_t>(columns * tiles->numYTiles()));
         table = stream.tellp() - sizeof(std::uint64_t) * offsets.size();
     }
 
@@ -264,16 +291,12 @@ ExrWriter::ExrWriter(const std::filesystem::path& path, const Settings& settings
                      const Crop& window, const FrameInfo& info,
                      const CameraDescription& description, const Camera& camera,
                      const Mattes* mattes)
-    : channels_(settings.channels) {
-    if (places_of(channels_).empty())
-        throw InputError("render.channels = []: an image needs at least one channel");
-    file_ = std::make_unique<File>(path,
-                                   header_of(settings, window, info, description, camera, mattes));
-}
+    : packer_(settings, window, info, description, camera, mattes),
+      file_(std::make_unique<File>(path, packer_.packers_->header, packer_.tiles())) {}
 
 ExrWriter::~ExrWriter() = default;
 
-PackedTile ExrWriter::pack(const TileImage& tile) {
+PackedTile TilePacker::pack(const TileImage& tile) {
     // Channels lie interleaved in the tile's records.
     const Imath::V2i corner(tile.x0, tile.y0);
     Imf::FrameBuffer buffer;
@@ -284,16 +307,16 @@ PackedTile ExrWriter::pack(const TileImage& tile) {
                                        tile.y1 - tile.y0, stride,
                                        stride * static_cast<std::size_t>(tile.width())));
     }
-    Packer& packer = file_->packers.local();
+    Packer& packer = packers_->of_thread.local();
     packer.stream.bytes.clear();
     packer.tiles.setFrameBuffer(buffer);
     packer.tiles.writeTile(tile.column, tile.row);
-    return {tile.column, tile.row, packer.stream.bytes};
+    const auto row = static_cast<std::uint64_t>(tile.row);
+    return {row * packers_->columns + static_cast<std::uint64_t>(tile.column), packer.stream.bytes};
 }
 
 void ExrWriter::write(const PackedTile& tile) {
-    const auto index = static_cast<std::size_t>(tile.row * file_->columns + tile.column);
-    file_->offsets[index] = file_->stream.tellp();
+    file_->offsets[tile.index] = file_->stream.tellp();
     file_->stream.write(tile.bytes.data(), static_cast<int>(tile.bytes.size()));
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "render/camera/camera.hpp"
@@ -12,8 +14,30 @@ namespace tesserae::render {
 
 /// A tile as it is stored in the file.
 struct PackedTile {
-    int column = 0, row = 0;
+    std::uint64_t index = 0;  ///< in the file's table: by rows
     std::vector<char> bytes;
+};
+
+/// Compresses tiles to what a frame's file holds of them.
+class TilePacker {
+  public:
+    /// As ExrWriter.
+    TilePacker(const Settings& settings, const Crop& window, const FrameInfo& info,
+               const CameraDescription& description, const Camera& camera, const Mattes* mattes);
+    ~TilePacker();
+
+    /// On any thread, while others do the same.
+    PackedTile pack(const TileImage& tile);
+    /// The file up to its first tile: the header, and a table without tiles.
+    std::string file_header() const;
+    /// How many tiles the file has.
+    std::uint64_t tiles() const;
+
+  private:
+    friend class ExrWriter;
+    struct Packers;
+    Channels channels_;
+    std::unique_ptr<Packers> packers_;
 };
 
 /// Writes a frame as a tiled, ZIP-compressed OpenEXR file, tiles in the order of the calls. Without
@@ -37,7 +61,7 @@ class ExrWriter {
     ~ExrWriter();
 
     /// Compresses a tile, on any thread, while others do the same.
-    PackedTile pack(const TileImage& tile);
+    PackedTile pack(const TileImage& tile) { return packer_.pack(tile); }
     /// One tile at a time.
     void write(const PackedTile& tile);
     /// Instead: all tiles of another file, as they are stored there. It must have been written with
@@ -49,8 +73,7 @@ class ExrWriter {
 
   private:
     struct File;
-    struct Packer;
-    Channels channels_;
+    TilePacker packer_;
     std::unique_ptr<File> file_;
 };
 

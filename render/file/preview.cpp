@@ -98,6 +98,13 @@ void Preview::add(const TileImage& tile) {
         }
 }
 
+bool Preview::add_sums(std::uint64_t first, std::span<const Sum> sums) {
+    if (first > sums_.size() || sums.size() > sums_.size() - first) return false;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) sums_[first + i][c] += sums[i][c];
+    return true;
+}
+
 std::vector<std::uint8_t> Preview::codes() const {
     std::vector<std::uint8_t> rgb(3 * sums_.size());
     const int w = window_.x1 - window_.x0, h = window_.y1 - window_.y0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "render/tile/tile_image.hpp"
@@ -22,6 +23,14 @@ class Preview {
     /// @throws RunError   the file cannot be written
     void write(const std::filesystem::path& path) const;
 
+    /// Red, green and blue of a preview pixel, before they are divided.
+    using Sum = std::array<std::uint32_t, 3>;
+    /// By rows.
+    std::span<const Sum> sums() const { return sums_; }
+    /// Adds what another preview of the same window has gathered, from pixel `first` on.
+    /// @return false if it reaches beyond the last
+    bool add_sums(std::uint64_t first, std::span<const Sum> sums);
+
     int width() const { return width_; }
     int height() const { return height_; }
 
@@ -31,7 +40,7 @@ class Preview {
     Crop window_;
     double gain_;
     int factor_, width_, height_;
-    std::vector<std::array<std::uint32_t, 3>> sums_;
+    std::vector<Sum> sums_;
 };
 
 }  // namespace tesserae::render

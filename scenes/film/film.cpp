@@ -9,6 +9,7 @@
 #include "core/file/file_writer.hpp"
 #include "render/file/copied_frame.hpp"
 #include "render/picture_needs.hpp"
+#include "scenes/farm/join.hpp"
 #include "scenes/film/coast.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
@@ -161,7 +162,8 @@ std::string invalid_samples_text(const render::FrameStats& stats, const Scene& s
 }
 
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
-                const fs::path& folder, Replace replace, bool quiet) {
+                const fs::path& folder, Replace replace, bool quiet,
+                std::optional<render::FramePart> part) {
     const auto begin = std::chrono::steady_clock::now();
     const bool is_changed = !require_folder_of(scene, folder, replace).empty();
     Poses poses(scene, frames, trajectory);
@@ -181,6 +183,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     std::optional<render::Mattes> mattes;
     if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);
 
+    const int parts = parts_of_frame(scene);
     std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -199,17 +202,29 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         Exposure exposure(scene, poses, info.frame);
         render::Picture picture = exposure.picture(scene, info.frame);
         if (mattes) picture.mattes = &*mattes;
+        const auto warn = [&](const render::FrameStats& stats) {
+            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
+                                            clamped_pixels_text(stats, scene, info.frame)})
+                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
+            report.stats += stats;
+        };
+        if (part) {
+            const auto stats =
+                render::render_part(picture, info, *part, part_file(files.exr, *part),
+                                    replace != Replace::kNothing, stop_requested());
+            if (stats) warn(*stats), ++report.parts;
+            progress.update(i + 1);
+            continue;
+        }
         if (shown && !render::needs_of(picture).moving_noise &&
             exposure.looks_like(shown->exposure, scene)) {
             render::copy_frame(shown->files, picture, info, files);
             ++report.copied;
         } else {
-            const render::FrameStats stats =
-                render::render_frame(picture, info, files.exr, files.preview, stop_requested());
-            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
-                                            clamped_pixels_text(stats, scene, info.frame)})
-                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
-            report.stats += stats;
+            warn(parts > 1 ? render_in_parts(picture, info, files, parts,
+                                             replace != Replace::kNothing, stop_requested())
+                           : render::render_frame(picture, info, files.exr, files.preview,
+                                                  stop_requested()));
             ++report.rendered;
             shown.emplace(Shown{std::move(exposure), files});
         }

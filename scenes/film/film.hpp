@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "render/frame.hpp"
@@ -14,6 +15,7 @@ struct FilmReport {
     int rendered = 0;
     int copied = 0;  ///< from the frame before, which looks the same
     int kept = 0;    ///< there already
+    int parts = 0;   ///< rendered, where only a part of each frame was asked for
     render::FrameStats stats;
     double seconds = 0;
     std::filesystem::path frames, preview;  ///< folder of the frames; the last frame's preview
@@ -30,12 +32,13 @@ std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& sc
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
 /// the caller's parallel::Threads.
+/// @param part   of each frame, into frames/NAME.0000.KofN.tiles for join_folder(); none: all of it
 /// @throws InputError   the folder holds another scene's frames that may not be replaced; the
 ///                      trajectory is of another motion or lacks steps that the frames need
 /// @throws RunError     a file cannot be written
 /// @throws Stopped      after a signal; finished frames are kept
 FilmReport film(const Scene& scene, const std::vector<int>& frames,
                 const std::filesystem::path& trajectory, const std::filesystem::path& folder,
-                Replace replace, bool quiet);
+                Replace replace, bool quiet, std::optional<render::FramePart> part = {});
 
 }  // namespace tesserae::scenes

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "render/file/whole_image.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
 #include "scenes/timeline.hpp"
@@ -92,7 +93,8 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
     }
     const bool is_ours = there.picture_version == info.picture_version &&
                          there.motion_version == info.motion_version;
-    if (is_ours && is_frame_of(scene, there, info.frame)) return fs::exists(files.preview);
+    if (is_ours && is_frame_of(scene, there, info.frame))
+        return fs::exists(files.preview) && render::is_whole_image(files.exr);
     if (replace == Replace::kAll) return false;
     if (replace == Replace::kOtherLooks && is_ours) return false;
     throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",

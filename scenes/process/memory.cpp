@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -58,10 +59,23 @@ std::uint64_t address_space_left() {
     return left_of(limit.rlim_cur, pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)));
 }
 
+/// Of what Slurm has granted to this job on its node, which not every site enforces:
+/// SLURM_MEM_PER_NODE [MiB]; 0 is all.
+std::uint64_t slurm_available() {
+    const char* text = std::getenv("SLURM_MEM_PER_NODE");
+    const std::uint64_t mib = text != nullptr ? std::strtoull(text, nullptr, 10) : 0;
+    if (mib == 0) return kUnlimited;
+    std::ifstream in("/proc/self/statm");
+    std::uint64_t size = 0, resident = 0;
+    in >> size >> resident;
+    return left_of(mib << 20, resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)));
+}
+
 }  // namespace
 
 std::uint64_t available_memory() {
-    return std::min({machine_available(), groups_available(), address_space_left()});
+    return std::min(
+        {machine_available(), groups_available(), address_space_left(), slurm_available()});
 }
 
 }  // namespace tesserae::scenes

@@ -18,6 +18,7 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr int kMaxThreads = 1024;
+constexpr int kMostTileParts = 100'000;
 
 /// Whole numbers of `text` between separators, exactly `count` of them.
 std::vector<int> numbers(const std::string& option, const std::string& text, char separator,
@@ -43,7 +44,7 @@ std::vector<int> numbers(const std::string& option, const std::string& text, cha
 
 /// Options of one subcommand, as typed.
 struct Typed {
-    std::string size, crop, integrator, intersector;
+    std::string size, crop, integrator, intersector, tiles;
     int samples = 0;
 };
 
@@ -153,6 +154,44 @@ void add_tools(CLI::App& app, CommandLine& line) {
         ->check(CLI::PositiveNumber);
 }
 
+void add_farm(CLI::App& app, CommandLine& line, Typed& typed) {
+    CLI::App& submit = *app.add_subcommand("submit", "job scripts of a film for Slurm or any farm");
+    add_scene(submit, line);
+    add_output(submit, line, "folder that all nodes see: job scripts, trajectory, frames");
+    add_picture(submit, line, typed);
+    FarmRequest& farm = line.farm;
+    const auto count = CLI::Range(1, 10'000'000);
+    submit.add_flag("--now", farm.now, "submit to Slurm, not only write the scripts");
+    submit.add_option("--for", farm.kind, "slurm, or commands: one a task, for any other farm")
+        ->check(CLI::IsMember({"slurm", "commands"}));
+    submit.add_option("--partition", farm.partition, "Slurm's partition");
+    submit.add_option("--account", farm.account, "Slurm's account");
+    submit.add_option("--max-running", farm.max_running, "tasks at once")->check(count);
+    submit.add_option("--cores", farm.cores, "of a task (default: 4)")->check(count);
+    submit.add_option("--chunk", farm.chunk, "frames of a task (default: some minutes of them)")
+        ->check(count);
+    submit.add_option("--sbatch", farm.sbatch, "any further option of sbatch")
+        ->allow_extra_args(false);
+
+    CLI::App& join = *app.add_subcommand("join", "whole frames of the parts of render --tiles");
+    add_common(join, line);
+    join.add_option("folder", line.file, "DIR of render")->required();
+
+    CLI::App& status = *app.add_subcommand(
+        "status", "frames complete, missing, invalid; exit status 0 only when complete");
+    add_common(status, line);
+    status.add_option("folder", line.file, "DIR of run, render or submit")->required();
+}
+
+render::FramePart part_of(const std::string& text) {
+    const char* const expected = "K/N, the K-th of N parts, for example 3/8";
+    const auto v = numbers("--tiles", text, '/', 2, expected);
+    if (v[0] < 1 || v[0] > v[1] || v[1] > kMostTileParts)
+        throw InputError(fmt::format("--tiles {}: expected {}, 1 <= K <= N <= {}", text, expected,
+                                     kMostTileParts));
+    return {v[0], v[1]};
+}
+
 /// Each option that overrides a scene key becomes an entry of the same kind as --set.
 void append_overrides(const CLI::App& app, const Typed& typed, std::vector<std::string>& sets) {
     const auto given = [&](const char* name) {
@@ -221,6 +260,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     add_output(render, line, "folder for the frames and previews");
     render.add_option("--trajectory", line.trajectory,
                       "made by tesserae simulate (default: simulates first where bodies move)");
+    render.add_option("--tiles", typed.tiles,
+                      "K/N: the K-th of N parts of each frame, for tesserae join");
     add_picture(render, line, typed);
 
     CLI::App& film = *app.add_subcommand("film", "an MP4 of a folder's previews, by ffmpeg");
@@ -250,7 +291,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         ->required()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
 
-    app.add_subcommand("submit", "not yet built")->allow_extras()->group("");
+    add_farm(app, line, typed);
 
     if (argc > 1) require_known_command(app, argv[1]);
     try {
@@ -265,8 +306,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     const CLI::App& chosen = *app.get_subcommands().front();
     line.command = chosen.get_name();
     if (line.command == "generate") require_known_generator(line.generator);
-    if (line.command == "submit")
-        throw InputError(fmt::format("tesserae {}: not yet built", line.command));
+    if (!typed.tiles.empty()) line.tiles = part_of(typed.tiles);
     append_overrides(chosen, typed, line.sets);
     if (line.threads == 0) line.threads = parallel::granted_cores();
     return line;

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "render/frame.hpp"
+#include "scenes/farm/request.hpp"
+
 namespace tesserae::scenes {
 
 /// What the user typed, checked as far as it can be without the scene.
@@ -24,6 +27,8 @@ struct CommandLine {
     std::optional<double> tolerance, extent;  ///< export's [m]
     std::optional<double> near_slice;         ///< view's [m]
     int threads = 0;
+    FarmRequest farm;                        ///< of submit
+    std::optional<render::FramePart> tiles;  ///< of render: a part of each frame
     bool quiet = false, json = false, overwrite = false, draft = false;
     /// "key=value" entries for load_scene: --set in order, then the options that override a key.
     std::vector<std::string> sets;

@@ -16,6 +16,7 @@
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
+#include "scenes/program/farm_commands.hpp"
 #include "scenes/program/film_commands.hpp"
 #include "scenes/program/info.hpp"
 #include "scenes/program/tool_commands.hpp"
@@ -157,6 +158,9 @@ int execute(const CommandLine& line) {
     if (line.command == "diff") status = diff_command(line);
     if (line.command == "plot") plot_command(line);
     if (line.command == "export") export_command(line);
+    if (line.command == "submit") submit_command(line);
+    if (line.command == "join") status = join_command(line);
+    if (line.command == "status") status = status_command(line);
     if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
         throw RunError("standard output: cannot be written");

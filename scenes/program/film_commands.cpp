@@ -16,6 +16,7 @@
 #include "scenes/process/progress.hpp"
 #include "scenes/process/shell_word.hpp"
 #include "scenes/process/signals.hpp"
+#include "scenes/program/farm_commands.hpp"
 #include "scenes/program/work.hpp"
 #include "scenes/timeline.hpp"
 
@@ -121,10 +122,12 @@ class Filming {
             if (is_run_ && is_new) tell_cost();
             if (simulates) text = simulated(json["simulate"]) + "\n";
             if (is_run_ && (is_new || is_changed)) tell_slice();
-            filmed = film(scene(), frames_, trajectory_, folder_, replace_, line_.quiet);
+            filmed =
+                film(scene(), frames_, trajectory_, folder_, replace_, line_.quiet, line_.tiles);
         });
+        if (line_.tiles) json["parts"] = filmed.parts;
         json["render"] = to_json(filmed);
-        text += filmed_text(filmed);
+        text += line_.tiles ? parts_text(filmed, folder_) : filmed_text(filmed);
         if (is_run_) {
             text += movie(json);
             write_file(folder_ / "report.json", json.dump(2) + "\n");

@@ -197,7 +197,9 @@ TEST(Program, WrongCommandLinesExitWithTwoAndSayWhy) {
         {{"run", scene, "-o", out, "--unknown"}, "unknown"},
         {{"generate", "pil", "--bodies", "10"}, "did you mean \"pile\"?"},
         {{"generate", "pile", "--bodies", "0"}, "--bodies"},
-        {{"submit", scene, "-o", out}, "not yet"},
+        {{"submit", scene, "-o", out, "--for", "nothing"}, "commands"},
+        {{"submit", scene, "-o", out, "--crop", "0,0,8,8"}, "a crop is no film"},
+        {{"status", folder.file("none")}, "holds no film"},
         {{"info", folder.file("none")}, "none"},
         {{"simulate", scene, "-o", folder.file("x.h5"), "--store-every", "0"}, "store-every"},
     };

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/file/file_writer.hpp"
+#include "render/file/exr_writer.hpp"
+#include "render/file/preview.hpp"
+#include "render/frame.hpp"
+
+namespace tesserae::render {
+
+/// What a part says of itself before its tiles.
+struct PartInfo {
+    FramePart part;
+    Crop window;
+    std::uint64_t tiles = 0;  ///< of the whole frame
+    std::string exr_header;  ///< with an empty table of tiles: the frame's scene, number and camera
+
+    /// Of one frame, cut in the same way.
+    bool goes_with(const PartInfo& o) const {
+        return part.count == o.part.count && exr_header == o.exr_header && tiles == o.tiles &&
+               window.x0 == o.window.x0 && window.y0 == o.window.y0 && window.x1 == o.window.x1 &&
+               window.y1 == o.window.y1;
+    }
+};
+
+/// Writes a part of a frame: the frame's own EXR header, tiles as the image will hold them, and the
+/// part's share of the preview's sums. Without finish() nothing is left.
+class PartWriter {
+  public:
+    /// @throws RunError   as FileWriter
+    PartWriter(const std::filesystem::path& path, const PartInfo& info);
+
+    void write(const PackedTile& tile);
+    void finish(const Preview& preview);
+
+  private:
+    FileWriter writer_;
+};
+
+/// @throws InputError   not a whole part file
+PartInfo read_part_info(const std::filesystem::path& file);
+
+/// Makes the frame and its preview, with the bytes of rendering it at once.
+/// @param parts   all parts of the frame, in their order
+/// @throws InputError   they are not; a file is damaged. RunError: a file cannot be written
+void join_parts(std::span<const std::filesystem::path> parts, const std::filesystem::path& exr,
+                const std::filesystem::path& preview);
+
+}  // namespace tesserae::render

@@ -1,0 +1,55 @@
+#include "render/file/whole_image.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace tesserae::render {
+namespace {
+
+/// A number of the file, little-endian as on every machine that this is built for.
+template <class T>
+T number(std::istream& in) {
+    T value = {};
+    in.read(reinterpret_cast<char*>(&value), sizeof value);
+    return value;
+}
+
+/// Skips magic number, version and the header's attributes (OpenEXR's "File Layout": each a name, a
+/// type, a size and as many bytes; an empty name ends them).
+void skip_header(std::istream& in) {
+    in.seekg(8);
+    for (std::string name, type; std::getline(in, name, '\0') && !name.empty();) {
+        std::getline(in, type, '\0');
+        in.seekg(number<std::int32_t>(in), std::ios::cur);
+    }
+}
+
+}  // namespace
+
+bool is_whole_image(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (number<std::uint32_t>(in) != 20000630u || !in)
+        throw InputError(fmt::format("{}: not a readable OpenEXR image", file.string()));
+    skip_header(in);
+    const auto begin = static_cast<std::uint64_t>(in.tellg());
+    const std::uint64_t size = std::filesystem::file_size(file);
+    if (!in) return false;
+    // The table ends where the first tile begins, and that is the least number in it.
+    std::uint64_t first = size, last = 0;
+    for (std::uint64_t at = begin; at + sizeof(std::uint64_t) <= first; at += sizeof at) {
+        const auto offset = number<std::uint64_t>(in);
+        if (!in || offset < begin || offset >= size) return false;
+        first = std::min(first, offset), last = std::max(last, offset);
+    }
+    // A tile: column, row, two levels, the count of its bytes, the bytes.
+    in.seekg(static_cast<std::streamoff>(last + 4 * sizeof(std::int32_t)));
+    const auto bytes = number<std::int32_t>(in);
+    return in && last + 5 * sizeof(std::int32_t) + static_cast<std::uint64_t>(bytes) == size;
+}
+
+}  // namespace tesserae::render

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "render/file/copied_frame.hpp"
+#include "render/frame.hpp"
+#include "scenes/scene.hpp"
+
+namespace tesserae::scenes {
+
+/// FRAMES/NAME.0000.exr to FRAMES/NAME.0000.KofN.tiles.
+std::filesystem::path part_file(const std::filesystem::path& exr, const render::FramePart& part);
+
+/// In how many parts a frame is rendered, so that who is interrupted begins one part again and not
+/// the frame: 1 where it is estimated below 5 minutes of one core. A function of the scene alone.
+int parts_of_frame(const Scene& scene);
+
+/// render_frame() by way of `count` parts, which are its journal: those that an earlier run has
+/// left are used, and all are removed once the frame is there.
+render::FrameStats render_in_parts(const render::Picture& picture, const render::FrameInfo& info,
+                                   const render::FrameFiles& files, int count, bool overwrite,
+                                   const std::atomic<bool>& stop);
+
+/// What joining did.
+struct JoinReport {
+    int joined = 0;                    ///< frames
+    std::vector<std::string> missing;  ///< "NAME.0007: parts 2, 5 of 8"
+};
+
+/// Makes whole frames and previews of the parts in DIR/frames, and removes these. Parts of frames
+/// that are not all there stay.
+/// @throws InputError   a part is damaged; RunError: a file cannot be written
+JoinReport join_folder(const std::filesystem::path& folder);
+
+}  // namespace tesserae::scenes

@@ -1,0 +1,139 @@
+// A frame rendered in parts and joined is the frame rendered at once.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/scenes/program/program.hpp"
+
+namespace tesserae::scenes::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> part_words(const std::string& scene, const std::string& out, int k, int n,
+                                    const std::vector<std::string>& more) {
+    std::vector<std::string> words = {
+        "render", scene, "-o", out, "--tiles", std::to_string(k) + "/" + std::to_string(n)};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+/// A still: no trajectory is needed.
+std::string still_scene() { return small_scene(0); }
+
+void expect_same_frame(const std::string& whole, const std::string& joined) {
+    for (const char* file : {"/frames/still.0000.exr", "/preview/still.0000.png"}) {
+        ASSERT_TRUE(fs::exists(joined + file)) << file;
+        EXPECT_EQ(content(whole + file), content(joined + file)) << file;
+    }
+    EXPECT_EQ(files_below(joined), files_below(whole)) << "no part is left";
+}
+
+TEST(Parts, JoinToTheBytesOfASingleRun) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    const std::vector<std::vector<std::string>> settings = {
+        {},
+        {"--set", "render.tile=8"},
+        {"--set", "render.tile=512"},
+        {"--crop", "5,3,50,41"},
+        {"--set", "render.noise_target=0.01", "--set", "render.max_samples=16"},
+        {"--integrator", "path", "--set",
+         "render.channels=[\"color\", \"cryptomatte\", \"light\"]"},
+        {"--size", "2000x20", "--samples", "1"}};
+    int number = 0;
+    for (const auto& every : settings) {
+        const auto whole = folder.file("whole" + std::to_string(number));
+        std::vector<std::string> words = {"render", scene, "-o", whole};
+        words.insert(words.end(), every.begin(), every.end());
+        ASSERT_EQ(tesserae(words).status, 0);
+        for (const int n : {1, 3, 17}) {
+            const auto out =
+                folder.file("parts" + std::to_string(number) + "-" + std::to_string(n));
+            // In any order, by any number of threads.
+            for (int k = n; k >= 1; --k) {
+                auto more = every;
+                more.insert(more.end(), {"--threads", std::to_string(1 + k % 3)});
+                const Outcome part = tesserae(part_words(scene, out, k, n, more));
+                ASSERT_EQ(part.status, 0) << part.err;
+            }
+            EXPECT_FALSE(fs::exists(out + "/frames/still.0000.exr"));
+            const Outcome join = tesserae({"join", out});
+            ASSERT_EQ(join.status, 0) << join.err;
+            expect_same_frame(whole, out);
+        }
+        ++number;
+    }
+}
+
+TEST(Parts, ThatAreThereAreKeptAndThoseThatLackAreNamed) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    const auto out = folder.file("out");
+    for (const int k : {1, 3}) ASSERT_EQ(tesserae(part_words(scene, out, k, 3, {})).status, 0);
+    const std::string first = out + "/frames/still.0000.1of3.tiles";
+    const auto time = fs::last_write_time(first);
+    const Outcome early = tesserae({"join", out});
+    EXPECT_EQ(early.status, 1);
+    EXPECT_NE(early.err.find("still.0000: parts 2 of 3"), std::string::npos) << early.err;
+    ASSERT_EQ(tesserae(part_words(scene, out, 1, 3, {})).status, 0);
+    EXPECT_EQ(fs::last_write_time(first), time) << "kept";
+    // Parts are invisible to status and hash.
+    EXPECT_EQ(tesserae({"status", out}).status, 1);
+
+    // A damaged part is an error that names it; --overwrite mends it.
+    ASSERT_EQ(tesserae(part_words(scene, out, 2, 3, {})).status, 0);
+    fs::resize_file(first, fs::file_size(first) - 3);
+    const Outcome damaged = tesserae({"join", out});
+    EXPECT_EQ(damaged.status, 2);
+    EXPECT_NE(damaged.err.find("1of3.tiles"), std::string::npos) << damaged.err;
+    EXPECT_FALSE(fs::exists(out + "/frames/still.0000.exr"));
+    fs::remove(first);
+    ASSERT_EQ(tesserae(part_words(scene, out, 1, 3, {})).status, 0);
+    EXPECT_EQ(tesserae({"join", out}).status, 0);
+    EXPECT_EQ(tesserae({"status", out}).status, 0);
+    // Once the frame is there, its parts are not made again.
+    ASSERT_EQ(tesserae(part_words(scene, out, 2, 3, {})).status, 0);
+    EXPECT_FALSE(fs::exists(out + "/frames/still.0000.2of3.tiles"));
+}
+
+/// A frame that is thought to be long is rendered by way of parts, and those that an earlier run
+/// has left are used. (It may take 2^20 samples, which makes it 22 parts; noise is never above
+/// 1000.)
+TEST(Parts, AreTheJournalOfALargeFrame) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    const std::vector<std::string> large = {"--set", "render.noise_target=1000", "--set",
+                                            "render.max_samples=1048576"};
+    const auto whole = folder.file("whole"), out = folder.file("out");
+    ASSERT_EQ(tesserae(part_words(scene, whole, 1, 1, large)).status, 0);
+    ASSERT_EQ(tesserae({"join", whole}).status, 0);
+
+    for (const int k : {1, 7}) ASSERT_EQ(tesserae(part_words(scene, out, k, 22, large)).status, 0);
+    // A part of another frame in the place of one shows that they are looked at.
+    std::vector<std::string> words = {"render", scene, "-o", out};
+    words.insert(words.end(), large.begin(), large.end());
+    const std::string seventh = out + "/frames/still.0000.7of22.tiles";
+    const std::string bytes = content(seventh);
+    std::ofstream(seventh) << "no part";
+    EXPECT_EQ(tesserae(words).status, 2);
+    EXPECT_TRUE(fs::exists(out + "/frames/still.0000.6of22.tiles")) << "kept for the next run";
+    std::ofstream(seventh, std::ios::binary) << bytes;
+    const Outcome render = tesserae(words);
+    ASSERT_EQ(render.status, 0) << render.err;
+    expect_same_frame(whole, out);
+}
+
+TEST(Parts, AWrongPartIsRefused) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    for (const char* text : {"0/3", "4/3", "1", "x/2", "1/0"}) {
+        const Outcome wrong =
+            tesserae({"render", scene, "-o", folder.file("out"), "--tiles", text});
+        EXPECT_EQ(wrong.status, 2) << text;
+        EXPECT_NE(wrong.err.find("--tiles"), std::string::npos) << wrong.err;
+    }
+}
+
+}  // namespace
+}  // namespace tesserae::scenes::testing
