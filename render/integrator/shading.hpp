@@ -12,11 +12,6 @@
 
 namespace tesserae::render {
 
-/// What a body's albedo is multiplied by, so that equal bodies beside each other can be told apart:
-/// each colour's factor is random between 1 - variation and 1, by three quarters the same for all
-/// of them. A function of the body's number.
-Color tint_of(BodyId body, double variation);
-
 /// Colour of a material at a point of the body's frame. Checker: cells of edge pattern_size, one of
 /// them centred on the origin, coloured by the parity of their four indices. Stripes: slabs of
 /// width pattern_size across the body's x axis, one of them centred on the origin. Odd cells have

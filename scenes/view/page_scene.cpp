@@ -4,7 +4,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "render/tint.hpp"
 #include "scenes/load/picture_keys.hpp"
+#include "scenes/process/base64.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -87,6 +89,24 @@ Json materials_of(const Scene& scene) {
     return materials;
 }
 
+/// What bodies' albedos are multiplied by, three bytes a body: what a screen tells apart. Empty
+/// where no material varies.
+std::string tints_of(const Scene& scene) {
+    const auto variation = [&](BodyId id) {
+        const render::Appearance& a = scene.appearance[scene.bodies.type[id]];
+        return scene.materials[a.material].albedo_variation;
+    };
+    std::string bytes;
+    bool any = false;
+    for (BodyId id = 0; id < scene.bodies.size(); ++id) {
+        any = any || variation(id) > 0;
+        const render::Color tint = render::tint_of(id, variation(id));
+        for (int i = 0; i < 3; ++i)
+            bytes += static_cast<char>(static_cast<unsigned char>(std::lround(255 * tint[i])));
+    }
+    return any ? bytes : std::string();
+}
+
 Json lights_of(const render::Lights& lights) {
     Json suns = Json::array(), lamps = Json::array();
     for (const render::Sun& sun : lights.suns)
@@ -140,6 +160,7 @@ std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moment
     json["types"] = types_of(scene, hulls);
     json["hulls"] = hulls.take();
     json["materials"] = materials_of(scene);
+    if (const std::string tints = tints_of(scene); !tints.empty()) json["tints"] = base64(tints);
     json["lights"] = lights_of(scene.lights);
 
     // Names need not be UTF-8 where a file is damaged; ASCII only; no tag can begin.

@@ -11,6 +11,7 @@ strength = 0.3
 [[material]]
 name = "tiles"
 pattern = "checker"
+albedo_variation = 0.5
 """
 
 SHAPES = {

@@ -34,6 +34,12 @@ function materialTexels(scene) {
     [...m.albedo, 0], [...m.pattern_albedo, kPatterns[m.pattern]], [...m.emission, m.pattern_size]]);
 }
 
+/// What each body of the page's albedo is multiplied by.
+function tintTexels(scene, poses) {
+  const bytes = bytesOfBase64(scene.tints);
+  return Array.from(poses.id, (id) => [...bytes.subarray(3 * id, 3 * id + 3)].map((b) => b / 255).concat(1));
+}
+
 /// The most of |direction . x| over a type's shape, for a direction in its own frame at f[at], ...
 function halfExtent(scene, type, f, at) {
   const [x, y, z, w] = [f[at], f[at + 1], f[at + 2], f[at + 3]];

@@ -25,6 +25,10 @@ class Renderer {
     this.target = gl.createFramebuffer();
     this.put("forms", padded(formTexels(scene)), gl.RGBA32F, gl.RGBA, gl.FLOAT, 4);
     this.put("materials", padded(materialTexels(scene)), gl.RGBA32F, gl.RGBA, gl.FLOAT, 4);
+    if (scene.tints) {
+      this.textures.tints = this.texture();
+      this.put("tints", padded(tintTexels(scene, poses)), gl.RGBA32F, gl.RGBA, gl.FLOAT, 4);
+    }
     gl.bindVertexArray(gl.createVertexArray());
   }
 
@@ -34,6 +38,7 @@ class Renderer {
     const {scene} = this, kinds = new Set(scene.types.map((type) => type.kind));
     const all = [...[...kinds].map((kind) => `SHAPE_${kind.toUpperCase()}`), ...shown];
     if (scene.materials.some((material) => material.pattern !== "none")) all.push("PATTERNS");
+    if (scene.tints) all.push("TINTS");
     all.push(`SUNS ${this.grids.suns.length}`, `LAMPS ${Math.min(scene.lights.lamps.length, kMostLamps)}`);
     const key = [pass, ...shown].join(" ");
     if (!this.programs.has(key)) {

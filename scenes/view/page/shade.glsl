@@ -14,6 +14,9 @@ uniform ivec3 sun_places[SUNS];  // in shade_list: first cell, first large body,
 uniform vec4 lamp_place[LAMPS];  // right, up, forward, fourth [m]
 uniform vec4 lamp_power[LAMPS];  // a point's flux or a sphere's radiance; the sphere's radius [m]
 #endif
+#ifdef TINTS
+uniform sampler2D tints;  // a texel a body
+#endif
 uniform vec3 sky;
 uniform float gain;
 uniform uint chosen;  // number of the chosen body + 1, or 0
@@ -111,6 +114,9 @@ Lit light_of(uint number, float t, vec3 direction, bool casts) {
 
     vec4 glow = texelFetch(materials, place(3 * form.material + 2), 0);
     vec3 albedo = albedo_at(form.material, local - kPatternDepth * glow.w * out_of);
+#ifdef TINTS
+    albedo *= texelFetch(tints, place(int(number)), 0).rgb;
+#endif
     vec3 irradiance = vec3(0);
 #if SUNS > 0
     for (int i = 0; i < SUNS; ++i) {

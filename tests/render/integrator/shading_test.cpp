@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/tint.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
