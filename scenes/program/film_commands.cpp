@@ -217,9 +217,14 @@ class Filming {
             return fmt::format(
                 "\nfilm:    not made: ffmpeg is not installed; with it: tesserae film {}",
                 shell_word(folder_.string()));
-        const MovieReport report = make_movie(scene(), folder_, line_.quiet);
-        json["film"] = to_json(report);
-        return "\n" + movie_text(report);
+        try {
+            const MovieReport report = make_movie(scene(), folder_, line_.quiet);
+            json["film"] = to_json(report);
+            return "\n" + movie_text(report);
+        } catch (const InputError& error) {
+            // Some frames still look as they did before: they were not asked for.
+            return fmt::format("\nfilm:    not made: {}", error.what());
+        }
     }
 
     CommandLine line_;

@@ -62,6 +62,12 @@ TEST_F(Movie, IsMadeOnceEveryFrameIsThere) {
     const auto made = fs::last_write_time(movie_);
     ASSERT_EQ(run({"--size", "51x33"}).status, 0);
     EXPECT_EQ(fs::last_write_time(movie_), made) << "nothing new to show";
+    // One frame of another look among them is no film, and no failure.
+    const Outcome mixed =
+        run({"--size", "51x33", "--set", "camera.field_of_view=20", "--frames", "5"});
+    EXPECT_EQ(mixed.status, 0) << mixed.err;
+    EXPECT_NE(mixed.out.find("not made: "), std::string::npos) << mixed.out;
+    EXPECT_NE(mixed.out.find("is a frame of another scene"), std::string::npos) << mixed.out;
     // A change of look is a change of the film, and a preview alone is enough.
     ASSERT_EQ(run({"--size", "50x30"}).status, 0);
     expect_movie(movie_, 12, "20/1", 50, 30);
