@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 
 /// Frames that are looked at, at most.
 constexpr std::size_t kMostFrames = 8;
+/// Making and syncing a trajectory costs this beside its steps, measured [s].
+constexpr double kFileSeconds = 0.03;
 /// The part of the time that simulating may take.
 constexpr double kSimulating = 0.4;
 
@@ -145,10 +147,11 @@ Cost measure_cost(const Scene& scene, const Plan& plan, const fs::path& trajecto
     const auto begin = std::chrono::steady_clock::now();
     if (trajectory.empty()) {
         Rehearsal rehearsal = rehearse(scene, plan, kSimulating * seconds);
-        cost.simulate_seconds = rehearsal.seconds;
-        if (rehearsal.steps > 0)
+        if (rehearsal.steps > 0) {
+            cost.simulate_seconds = rehearsal.seconds + kFileSeconds;
             cost.measured.push_back(
                 fmt::format("{} of {} steps", rehearsal.taken, rehearsal.steps));
+        }
         if (!rehearsal.is_whole())
             cost.guessed.push_back(
                 fmt::format("steps {} to {}, as if with {:.0f} contacts each; frames from {:.3g} s "
