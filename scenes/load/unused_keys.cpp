@@ -31,6 +31,15 @@ void check_render(Unused unused, const Scene& scene) {
     unused(s.noise_target == 0, "max_samples", "noise_target = 0: every pixel has `samples`");
     unused(s.intersector == render::Intersector::kAnalytic, "max_steps",
            "intersector = \"analytic\" takes no steps");
+    render::Settings unlocked = s;
+    unlocked.lock_noise = false;
+    const bool is_random = render::needs_of({scene.bodies, scene.appearance, scene.materials,
+                                             scene.camera, scene.lights, unlocked})
+                               .moving_noise;
+    unused(!is_random, "seed", "nothing in the picture is random");
+    unused(!is_random, "lock_noise", "nothing in the picture is random");
+    unused(!scene.physics && scene.camera.shutter == 0 && !s.channels.motion, "frames_per_second",
+           "a still: without [physics] there is one frame");
     const bool one = s.most_samples() == 1;
     unused(one, "filter", "one sample, which is at the pixel's centre");
     unused(one, "filter_width", "one sample, which is at the pixel's centre");
@@ -54,6 +63,13 @@ void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene) {
         TableReader reader(*tables[i], origin, fmt::format("material {}", i));
         // The first is the default's.
         check_material({reader, lines}, scene.materials[i + 1]);
+    }
+    const auto lattices = root.tables("lattice");
+    for (std::size_t i = 0; i < lattices.size(); ++i) {
+        TableReader reader(*lattices[i], origin, fmt::format("lattice {}", i));
+        double jitter = 0;
+        reader.read("jitter", jitter, Rule::kNonNegative);
+        Unused(reader, lines)(jitter == 0, "seed", "jitter = 0: nothing of it is random");
     }
     if (const auto* table = root.table("camera")) {
         TableReader reader(*table, origin, "[camera]");

@@ -1,6 +1,7 @@
 #include "scenes/program/commands.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -83,10 +84,12 @@ void print_names(const SliceReport& slice) {
         fmt::print("seen        and {} names more (--json has all)\n", slice.names.size() - shown);
 }
 
-/// The most that a plan takes of the user's time [s].
-constexpr double kPlanSeconds = 4;
+/// The most that a plan takes of the user's time, and the least that it measures for [s].
+constexpr double kPlanSeconds = 4, kLeastMeasured = 1;
 
 void plan_command(const CommandLine& line) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
     Work work(line);
     count_off_slice(work.scene, work.plan);
     warn_of_hidden_glass(work.scene, work.plan);
@@ -94,7 +97,10 @@ void plan_command(const CommandLine& line) {
     Cost cost;
     std::optional<SliceReport> slice;
     parallel::Threads(line.threads).run([&] {
-        cost = measure_cost(work.scene, work.plan, line.trajectory, frames, kPlanSeconds);
+        const double left =
+            kPlanSeconds - std::chrono::duration<double>(Clock::now() - begin).count();
+        cost = measure_cost(work.scene, work.plan, line.trajectory, frames,
+                            std::max(kLeastMeasured, left));
         if (line.trajectory.empty() && work.plan.moves) return;
         slice = look_at_slice(work.scene, line.trajectory, frames);
         for (std::string& warning : slice->warnings)

@@ -18,6 +18,12 @@ TEST(UnusedKeys, AreNamedWithTheirPlaceAndReason) {
         {"[render]\nmax_samples = 64\n", "max_samples = 64", "noise_target = 0"},
         {"[render]\nintersector = \"analytic\"\nmax_steps = 9\n", "max_steps = 9", "no steps"},
         {"[render]\nsamples = 1\nfilter = \"gaussian\"\n", "filter = \"gaussian\"", "one sample"},
+        {"[physics]\n[render]\nsamples = 1\nseed = 4\n", "seed = 4", "random"},
+        {"[physics]\n[render]\nsamples = 1\nlock_noise = true\n", "lock_noise = true", "random"},
+        {"[render]\nframes_per_second = 12\n", "frames_per_second = 12", "one frame"},
+        {"[[lattice]]\nshape = \"hypersphere\"\nradius = 1\ncount = [1, 1, 1, 1]\n"
+         "spacing = [1, 1, 1, 1]\nseed = 3\n",
+         "lattice 0: seed = 3", "jitter = 0"},
         {"[camera]\nfocus_distance = 3\n", "focus_distance = 3", "all is sharp"},
         {"[camera]\nshutter = 0.5\n", "shutter = 0.5", "nothing moves"},
         {"[[material]]\nname = \"m\"\nior = 1.3\n", "material 0: ior = 1.3", "not \"glass\""},
