@@ -31,6 +31,15 @@ constexpr double kDeepest = 0.25;
 /// more to find; more, and they stop visibly before what they hit.
 constexpr double kTouch = 0.005;
 
+/// How far bodies may move against each other until the manifold of their flat faces is found anew,
+/// as a part of the least half-size, usual 0.001: until then it moves with both. More, and what slides
+/// slowly stands on where it was; less, and what hardly moves costs as much as what does.
+constexpr double kKeptMotion = 0.001;
+
+/// Margin of manifolds that are kept, in the slop of the pair, usual 2. More, and points that do
+/// not touch take the places of those that do; less, and only slower bodies keep theirs.
+constexpr double kKeptMargin = 2;
+
 /// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
 /// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
 constexpr double kBiasPart = 0.2;

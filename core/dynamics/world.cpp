@@ -5,6 +5,7 @@
 
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/kept_contacts.hpp"
 #include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/stages/sleeping.hpp"
 
@@ -93,11 +94,19 @@ void World::find_contacts(Schedule& schedule) {
         schedule.for_each_range(count, grain, work);
     };
     const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
+    const bool keeps = simulation_.needs.manifolds;
+    if (step_.substep > 0) step_.last_kept.swap(step_.kept);
+    const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
     for (bool look = true; look;) {
+        if (keeps) begin_kept(step_, kPairGrain, step_.kept);
         contacts_.collect(
             for_each_range, step_.pairs.size(), kPairGrain,
             [&](Range pairs, std::vector<Contact>& list) {
-                tesserae::find_contacts(simulation_, step_, pairs, list);
+                if (keeps)
+                    find_kept_contacts(simulation_, step_, pairs, last,
+                                       step_.kept[pairs.begin / kPairGrain], list);
+                else
+                    tesserae::find_contacts(simulation_, step_, pairs, list);
             },
             step_.contacts);
         look = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&

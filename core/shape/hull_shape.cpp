@@ -77,6 +77,12 @@ double half_extent_along(const HullShape& shape, const Vec4& direction) {
     return std::max(corners.largest_at(direction).value, corners.largest_at(-direction).value);
 }
 
+bool is_face_normal(const HullShape& shape, const Vec4& direction) {
+    const HullBody& body = body_of(shape);
+    const HullCell& cell = body.hull.cells[body.normals.largest_at(direction).number];
+    return (direction - cell.plane.normal).norm() <= kFaceNormal;
+}
+
 Vec4 support(const HullShape& shape, const Vec4& direction) {
     const HullBody& body = body_of(shape);
     return body.hull.vertices[body.corners.largest_at(direction).number];

@@ -43,6 +43,7 @@ double ray_exit(const HullShape& shape, const Vec4& origin, const Vec4& directio
 /// Of a point of the surface: the mean of the normals of all cells there. In a slice two cells may
 /// be as one, and which of them is nearer is rounding.
 Vec4 shading_normal(const HullShape& shape, const Vec4& point);
+bool is_face_normal(const HullShape& shape, const Vec4& direction);
 /// The largest of the cells' planes' distances.
 Level quick_level(const HullShape& shape, const Vec4& point);
 Rim rim(const HullShape& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);

@@ -57,6 +57,10 @@ Vec4 support(const Hyperbox& shape, const Vec4& direction) {
     return 0.5 * shape.size.cwiseProduct(signs_of(direction));
 }
 
+bool is_face_normal(const Hyperbox& shape, const Vec4& direction) {
+    return (direction - face_along(shape, direction).normal).norm() <= kFaceNormal;
+}
+
 Face face_along(const Hyperbox& shape, const Vec4& direction) {
     int axis;
     direction.cwiseAbs().maxCoeff(&axis);

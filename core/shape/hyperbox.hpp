@@ -25,6 +25,7 @@ double bounding_radius(const Hyperbox& shape);
 Vec4 half_extents(const Hyperbox& shape, const Mat4& rotation);
 double half_extent_along(const Hyperbox& shape, const Vec4& direction);
 Vec4 support(const Hyperbox& shape, const Vec4& direction);
+bool is_face_normal(const Hyperbox& shape, const Vec4& direction);
 Face face_along(const Hyperbox& shape, const Vec4& direction);
 std::uint64_t faces_near(const Hyperbox& shape, const Vec4& point, double depth);
 double signed_distance(const Hyperbox& shape, const Vec4& point);

@@ -137,6 +137,16 @@ concept HasPrincipalAxes = requires(const S& s) {
     { principal_axes(s) } -> std::same_as<const Rotor*>;
 };
 
+/// How far a unit vector may be from the normal of a face that it is.
+constexpr double kFaceNormal = 1e-6;
+
+/// A shape that has nothing but flat faces: the manifold of two such moves with them.
+template <class S>
+concept IsPolytope = requires(const S& s, const Vec4& direction) {
+    /// Whether a unit vector is the normal of a face, to kFaceNormal.
+    { is_face_normal(s, direction) } -> std::same_as<bool>;
+};
+
 /// A shape with flat parts: bodies slide over several of them that lie in one plane as over one.
 template <class S>
 concept HasFaces = requires(const S& s, const Vec4& direction, const Vec4& point, double depth) {

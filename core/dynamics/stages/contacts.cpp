@@ -16,14 +16,19 @@ double margin_of(const Simulation& simulation, const StepData& step, BodyId a, B
     return std::min(type_a.slop, type_b.slop) + step.h * speed;
 }
 
+void find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
+                      double margin, std::vector<Contact>& list) {
+    const auto [a, b] = pair;
+    const Bodies& bodies = simulation.bodies;
+    find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                  bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+}
+
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                    std::vector<Contact>& list) {
-    const Bodies& bodies = simulation.bodies;
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
-        const auto [a, b] = step.pairs[i];
-        find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
-                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]},
-                      margin_of(simulation, step, a, b), list);
+        const BodyPair& pair = step.pairs[i];
+        find_contacts_of(simulation, step, pair, margin_of(simulation, step, pair.a, pair.b), list);
     }
 }
 

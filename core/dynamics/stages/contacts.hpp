@@ -7,9 +7,12 @@ namespace tesserae {
 /// Up to what separation [m] a pair's points are found: see find_contacts().
 double margin_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
 
-/// Narrow phase of step.pairs in the range: appends their contacts to a list. Reported are points
-/// that can close within one sub-step at the present relative velocity, and those that are within
-/// the allowed overlap of touching.
+/// Narrow phase of a pair where its bodies are: appends its contacts to a list. With the margin of
+/// margin_of() these are points that can close within one sub-step at the present relative
+/// velocity, and those that are within the allowed overlap of touching.
+void find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
+                      double margin, std::vector<Contact>& list);
+/// That of step.pairs in the range.
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                    std::vector<Contact>& list);
 

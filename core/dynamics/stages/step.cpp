@@ -178,6 +178,7 @@ StepReport commit_step(Simulation& simulation, StepData& step) {
     std::swap(memory.angular_impulses, step.recalled_angular);
     if (simulation.settings.sleeping) fall_asleep(simulation, step);
     std::swap(memory.asleep, step.asleep);
+    std::swap(memory.kept, step.kept);
     std::swap(simulation.bodies.position, step.position);
     std::swap(simulation.bodies.rotor, step.rotor);
     std::swap(simulation.bodies.velocity, step.velocity);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/algebra/rotor.hpp"
 #include "core/dynamics/state/bodies.hpp"
 
 namespace tesserae {
@@ -16,6 +17,28 @@ struct ContactImpulse {
     Vec4 tangent = Vec4::Zero();  ///< friction impulse on b, world [N s]
 };
 
+/// The manifold of two bodies that hardly move against each other, as it was found in the frame of
+/// a where b was at `offset` and turned by `rotor`. That alone is state; the rest follows from it.
+struct KeptManifold {
+    enum class Keeps : std::uint8_t { kUnknown, kNothing, kNormalOfA, kNormalOfB, kNoFace };
+
+    BodyId a = 0, b = 0;           ///< a < b
+    Vec4 offset = Vec4::Zero();    ///< [m]
+    Rotor rotor;                   ///< b's frame to a's
+    Keeps keeps = Keeps::kUnknown;
+    std::uint32_t first = 0, count = 0;  ///< its points
+    Vec4 normal = Vec4::Zero();          ///< from a to b, in the frame of the body whose face it is
+};
+struct KeptPoint {
+    Vec4 on_a, on_b;  ///< in the bodies' frames [m]
+    std::uint32_t feature;
+};
+/// Those of a range of pairs.
+struct KeptManifolds {
+    std::vector<KeptManifold> manifolds;  ///< ascending (a, b), from list to list too
+    std::vector<KeptPoint> points;
+};
+
 /// Everything beside the bodies' state that one step leaves to the next and that changes results.
 /// Saved with a trajectory so that a resumed run continues bit for bit.
 struct StepMemory {
@@ -26,6 +49,7 @@ struct StepMemory {
     /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
     /// in, or kAwake.
     std::vector<BodyId> asleep;
+    std::vector<KeptManifolds> kept;
     std::vector<double> still;  ///< how long every body has hardly moved [s], or empty
     double time = 0;            ///< of all steps so far [s]; changes no result, messages name it
 };

@@ -30,6 +30,9 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
     needs.seams = std::any_of(bodies.types.begin(), bodies.types.end(), [](const BodyType& type) {
         return std::visit([]<class S>(const S&) { return S::kBounded && HasFaces<S>; }, type.shape);
     });
+    std::size_t flat = 0;
+    for (BodyId id = 0; id < bodies.size() && flat < 2; ++id) flat += types[bodies.type[id]].flat;
+    needs.manifolds = flat == 2;
     needs.turning = any([](const auto& type) { return !(type.inverse_inertia == Bivector{}); });
     for (BodyId id = 0; id < bodies.size() && !needs.turning; ++id)
         needs.turning = turns(bodies.rotor[id], bodies.angular_velocity[id]);

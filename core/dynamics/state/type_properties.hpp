@@ -19,6 +19,7 @@ struct TypeProperties {
     bool has_axes = false;     ///< the principal axes are not the body's
     Rotor axes;                ///< from principal axes to the body's
     bool bounded = false;
+    bool flat = false;     ///< has nothing but flat faces
     bool movable = false;  ///< contacts can change its motion
     bool falls = false;    ///< gravity acts on it
     double radius = 0;     ///< of the bounding sphere about the centre [m]
