@@ -13,8 +13,9 @@ constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
 /// Of each, where there is rolling friction; files of before there was have none.
 constexpr std::size_t kAngularBytes = 6 * 8;
 constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
-/// Rows, first, hash, step, numbers of impulses and of bodies.
-constexpr std::size_t kFixedBytes = 7 * 8;
+constexpr std::size_t kManifoldBytes = 2 * 4 + 12 * 8;
+/// Rows, first, hash, step, numbers of impulses, of bodies and of manifolds.
+constexpr std::size_t kFixedBytes = 8 * 8;
 constexpr std::size_t kFrontBytes = 3 * 8;  ///< length, hash
 
 template <class Value>
@@ -24,6 +25,15 @@ void put(std::string& bytes, const Value& value) {
 
 void put(std::string& bytes, const Bivector& b) {
     for (const double plane : {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw}) put(bytes, plane);
+}
+
+void put(std::string& bytes, const KeptManifold& m) {
+    put(bytes, m.a);
+    put(bytes, m.b);
+    for (int axis = 0; axis < 4; ++axis) put(bytes, m.offset[axis]);
+    put(bytes, m.rotor.s);
+    put(bytes, m.rotor.b);
+    put(bytes, m.rotor.p);
 }
 
 template <class Value>
@@ -36,13 +46,24 @@ void take(std::string_view& bytes, Bivector& b) {
     for (double* plane : {&b.xy, &b.xz, &b.xw, &b.yz, &b.yw, &b.zw}) take(bytes, *plane);
 }
 
+void take(std::string_view& bytes, KeptManifold& m) {
+    take(bytes, m.a);
+    take(bytes, m.b);
+    for (int axis = 0; axis < 4; ++axis) take(bytes, m.offset[axis]);
+    take(bytes, m.rotor.s);
+    take(bytes, m.rotor.b);
+    take(bytes, m.rotor.p);
+}
+
 }  // namespace
 
 std::string to_bytes(const ResumeRecord& record) {
+    std::size_t manifolds = 0;
+    for (const KeptManifolds& list : record.memory.kept) manifolds += list.manifolds.size();
     std::string body;
     body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
                  record.memory.angular_impulses.size() * kAngularBytes +
-                 record.memory.asleep.size() * kBodyBytes);
+                 record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes);
     put(body, record.rows);
     put(body, record.first);
     put(body, record.hash);
@@ -53,6 +74,7 @@ std::string to_bytes(const ResumeRecord& record) {
                memory.angular_impulses.size() == memory.impulses.size());
     put(body, static_cast<std::uint64_t>(memory.impulses.size()));
     put(body, static_cast<std::uint64_t>(memory.asleep.size()));
+    put(body, static_cast<std::uint64_t>(manifolds));
     for (const ContactImpulse& impulse : memory.impulses) {
         put(body, impulse.a);
         put(body, impulse.b);
@@ -62,6 +84,8 @@ std::string to_bytes(const ResumeRecord& record) {
     }
     for (BodyId island : memory.asleep) put(body, island);
     for (double time : memory.still) put(body, time);
+    for (const KeptManifolds& list : memory.kept)
+        for (const KeptManifold& manifold : list.manifolds) put(body, manifold);
     for (const Bivector& impulse : memory.angular_impulses) put(body, impulse);
     std::string bytes;
     bytes.reserve(kFrontBytes + body.size());
@@ -81,16 +105,19 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (hash_of(bytes) != hash) return std::nullopt;
 
     ResumeRecord record;
-    std::uint64_t impulses = 0, bodies = 0;
+    std::uint64_t impulses = 0, bodies = 0, manifolds = 0;
     take(bytes, record.rows);
     take(bytes, record.first);
     take(bytes, record.hash);
     take(bytes, record.step);
     take(bytes, impulses);
     take(bytes, bodies);
-    if (impulses > bytes.size() / kImpulseBytes || bodies > bytes.size() / kBodyBytes)
+    take(bytes, manifolds);
+    if (impulses > bytes.size() / kImpulseBytes || bodies > bytes.size() / kBodyBytes ||
+        manifolds > bytes.size() / kManifoldBytes)
         return std::nullopt;
-    const std::uint64_t plain = impulses * kImpulseBytes + bodies * kBodyBytes;
+    const std::uint64_t plain =
+        impulses * kImpulseBytes + bodies * kBodyBytes + manifolds * kManifoldBytes;
     const bool has_angular = bytes.size() != plain;
     const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
@@ -106,6 +133,9 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     record.memory.still.resize(bodies);
     for (BodyId& island : record.memory.asleep) take(bytes, island);
     for (double& time : record.memory.still) take(bytes, time);
+    if (manifolds > 0) record.memory.kept.emplace_back().manifolds.resize(manifolds);
+    for (KeptManifolds& list : record.memory.kept)
+        for (KeptManifold& manifold : list.manifolds) take(bytes, manifold);
     if (has_angular) record.memory.angular_impulses.resize(impulses);
     for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_kernels.hpp"
+#include "core/dynamics/solver/momentum.hpp"
 
 namespace tesserae {
 
@@ -81,12 +83,65 @@ class ColouredIsland {
     ColouredStage stage_;
 };
 
+/// Calls round(stage, batches) and general(stage, batches) for pieces of all batches.
+template <class Threads, class Round, class General>
+void for_all_rows(const ColouredIsland& island, const Threads& threads, const Round& round,
+                  const General& general) {
+    island.for_colours(threads, LaneCount::kOne, false,
+                       [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+                           at_work.for_batches(batches.round, 1, round);
+                           at_work.for_batches(batches.general, kManifoldPoints, general);
+                       });
+}
+
+/// See momentum.hpp.
+template <class Threads>
+class Momentum {
+  public:
+    Momentum(const ColouredIsland& island, const Threads& threads)
+        : island_(island), threads_(threads) {
+        const ColouredStage& stage = island.stage();
+        threads.for_bodies(island.bodies(), [&](Range bodies) { begin_momentum(stage, bodies); });
+        for_all_rows(
+            island, threads, [&](BatchRange some) { begin_round_momentum(stage, some); },
+            [&](BatchRange some) { begin_general_momentum(stage, some); });
+    }
+    /// From one pair of sweeps to the next.
+    void carry_on() {
+        const ColouredStage& stage = island_.stage();
+        threads_.for_bodies(island_.bodies(),
+                            [&](Range bodies) { measure_turning_back(stage, bodies); });
+        double turned_back = 0;  // in the order of the bodies, for any number of threads
+        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
+            turned_back += stage.step.coloured.turned_back[i];
+        const float part = turned_back > 0 ? 0 : static_cast<float>(kMomentum);
+        threads_.for_bodies(island_.bodies(),
+                            [&](Range bodies) { tesserae::carry_on(stage, bodies, part); });
+        for_all_rows(
+            island_, threads_, [&](BatchRange some) { carry_on_round(stage, some, part); },
+            [&](BatchRange some) { carry_on_general(stage, some, part); });
+    }
+
+  private:
+    const ColouredIsland& island_;
+    const Threads& threads_;
+};
+
 /// @return the residual of the last iteration [m/s]
 template <class Threads>
 double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& effort,
                         const Threads& threads, LaneCount lanes) {
     const ColouredStage& stage = island.stage();
+    // Of loads alone: in a blow contacts open and close.
+    const bool is_load = stage.cause == Cause::kLoad && pass == Pass::kSolve;
+    std::optional<Momentum<Threads>> momentum;
     return iterate(pass, effort, [&](Sweep sweep) {
+        if (is_load && sweep.backward) {
+            if (momentum)
+                momentum->carry_on();
+            else if (effort.sweeps > 3)
+                momentum.emplace(island, threads);
+        }
         double residual = 0;
         island.for_colours(
             threads, lanes, sweep.backward,

@@ -95,6 +95,11 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
 void Colouring::end(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     coloured.changes.resize(coloured.bodies.size());
+    coloured.last_changes.resize(coloured.bodies.size());
+    coloured.first_changes.resize(coloured.bodies.size());
+    coloured.turned_back.resize(coloured.bodies.size());
+    coloured.last_round.resize(coloured.round.size() * impulses_of_round(coloured));
+    coloured.last_general.resize(coloured.general_rows * impulses_of_general(coloured));
     if (coloured.turns_unevenly) coloured.inertias.resize(coloured.bodies.size());
     if (simulation.settings.solver == Solver::kSoft)
         coloured.angular_velocity.resize(coloured.bodies.size());

@@ -57,8 +57,7 @@ double way(const KeptManifold& from, const Relative& to, double radius) {
     const Rotor &r = to.rotor, &q = from.rotor;
     const double s = r.s - q.s, p = r.p - q.p;
     const Bivector b = r.b - q.b;
-    return stable_norm(to.offset - from.offset) +
-           2 * radius * std::sqrt(s * s + dot(b, b) + p * p);
+    return stable_norm(to.offset - from.offset) + 2 * radius * std::sqrt(s * s + dot(b, b) + p * p);
 }
 
 bool is_normal_of_face(const Shape& shape, const Vec4& direction) {
@@ -105,7 +104,8 @@ class KeptContacts {
             find_again(m, kKeptMargin * slop);
         }
         const KeptManifold& m = kept_.manifolds.back();
-        if (m.keeps == Keeps::kNoFace) return find_contacts_of(simulation_, step_, pair, margin, list_);
+        if (m.keeps == Keeps::kNoFace)
+            return find_contacts_of(simulation_, step_, pair, margin, list_);
         if (m.count > 0) report(m, from_a, now, margin);
     }
 
@@ -138,22 +138,27 @@ class KeptContacts {
         m.normal = m.keeps == Keeps::kNormalOfA ? normal : of_b;
         m.count = static_cast<std::uint32_t>(found_.size());
         for (const Contact& c : found_) {
-            const Vec4 half = 0.5 * c.separation * normal;
-            kept_.points.push_back(
-                {c.point - half, to_b * (c.point + half - m.offset), c.feature});
+            const Vec4 on_a = c.point - 0.5 * c.separation * normal;
+            kept_.points.push_back({{on_a[0], on_a[1], on_a[2], on_a[3]}, c.separation, c.feature});
         }
     }
 
     void report(const KeptManifold& m, const Mat4& from_a, const Relative& now, double margin) {
-        const Mat4 turn = to_matrix(now.rotor);
-        const Vec4 normal = m.keeps == Keeps::kNormalOfA ? m.normal : Vec4(turn * m.normal);
+        // Where b was, to where it is.
+        const Mat4 turned_b = to_matrix(now.rotor),
+                   turn = turned_b * to_matrix(m.rotor).transpose();
+        const bool of_a = m.keeps == Keeps::kNormalOfA;
+        const Vec4 first_normal = of_a ? m.normal : Vec4(to_matrix(m.rotor) * m.normal);
+        const Vec4 normal = of_a ? m.normal : Vec4(turned_b * m.normal);
         const Vec4 in_world = from_a * normal;
         for (std::uint32_t i = m.first; i < m.first + m.count; ++i) {
             const KeptPoint& p = kept_.points[i];
-            const Vec4 on_b = now.offset + turn * p.on_b;
-            const double separation = normal.dot(on_b - p.on_a);
+            const Vec4 on_a(p.on_a.data());
+            const Vec4 first = on_a + p.separation * first_normal;
+            const Vec4 on_b = now.offset + turn * (first - m.offset);
+            const double separation = normal.dot(on_b - on_a);
             if (separation <= margin)
-                list_.push_back({in_world, step_.position[m.a] + from_a * (0.5 * (p.on_a + on_b)),
+                list_.push_back({in_world, step_.position[m.a] + from_a * (0.5 * (on_a + on_b)),
                                  separation, m.a, m.b, p.feature});
         }
     }

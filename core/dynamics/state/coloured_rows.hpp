@@ -127,7 +127,11 @@ struct ColouredIslands {
     std::vector<Batch> round, general;
     std::uint32_t general_rows = 0;
 
-    std::vector<BodyChange> changes;                ///< of `bodies`
+    std::vector<BodyChange> changes;  ///< of `bodies`
+    /// Of `bodies`: `changes` before the present pair of sweeps, and those that it began with.
+    std::vector<BodyChange> last_changes, first_changes;
+    std::vector<double> turned_back;                ///< of `bodies`, see momentum.hpp
+    std::vector<Eight> last_round, last_general;    ///< impulses of the rows before the pair
     std::vector<BodyInertia> inertias;              ///< of `bodies`, if any turns unevenly
     std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
     std::vector<RoundRow> round_rows;               ///< of `round`
@@ -139,5 +143,13 @@ struct ColouredIslands {
     std::vector<PairRolling> pair_rolling;          ///< of `general`
     std::vector<GeneralRolling> general_rolling;    ///< of `rows`
 };
+
+/// Eights of impulses of a row.
+inline std::size_t impulses_of_round(const ColouredIslands& coloured) {
+    return 1 + (coloured.friction ? 4 : 0) + (coloured.rolling ? 6 : 0);
+}
+inline std::size_t impulses_of_general(const ColouredIslands& coloured) {
+    return 1 + (coloured.friction ? 3 : 0) + (coloured.rolling ? 6 : 0);
+}
 
 }  // namespace tesserae

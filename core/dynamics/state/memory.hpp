@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -22,15 +23,16 @@ struct ContactImpulse {
 struct KeptManifold {
     enum class Keeps : std::uint8_t { kUnknown, kNothing, kNormalOfA, kNormalOfB, kNoFace };
 
-    BodyId a = 0, b = 0;           ///< a < b
-    Vec4 offset = Vec4::Zero();    ///< [m]
-    Rotor rotor;                   ///< b's frame to a's
+    BodyId a = 0, b = 0;         ///< a < b
+    Vec4 offset = Vec4::Zero();  ///< [m]
+    Rotor rotor;                 ///< b's frame to a's
     Keeps keeps = Keeps::kUnknown;
     std::uint32_t first = 0, count = 0;  ///< its points
     Vec4 normal = Vec4::Zero();          ///< from a to b, in the frame of the body whose face it is
 };
 struct KeptPoint {
-    Vec4 on_a, on_b;  ///< in the bodies' frames [m]
+    std::array<double, 4> on_a;  ///< in a's frame [m]
+    double separation;           ///< where it was found, along the normal [m]
     std::uint32_t feature;
 };
 /// Those of a range of pairs.

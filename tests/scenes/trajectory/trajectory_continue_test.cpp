@@ -36,6 +36,14 @@ std::string content_of(const fs::path& file) {
     return text.str();
 }
 
+/// In order, whatever lists they are in.
+std::vector<KeptManifold> kept_of(const StepMemory& memory) {
+    std::vector<KeptManifold> all;
+    for (const KeptManifolds& list : memory.kept)
+        all.insert(all.end(), list.manifolds.begin(), list.manifolds.end());
+    return all;
+}
+
 class TrajectoryContinue : public ::testing::Test {
   protected:
     TrajectoryWriter open(std::uint64_t rows, bool overwrite = false) const {
@@ -81,6 +89,15 @@ TEST_F(TrajectoryContinue, EndsWithTheBytesOfOneStraightRun) {
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i)
                 EXPECT_EQ(resume->memory.impulses[i].tangent, row.memory.impulses[i].tangent);
             EXPECT_EQ(resume->memory.angular_impulses, row.memory.angular_impulses);
+            const auto kept = kept_of(resume->memory), expected_kept = kept_of(row.memory);
+            ASSERT_EQ(kept.size(), expected_kept.size());
+            for (std::size_t i = 0; i < kept.size(); ++i) {
+                EXPECT_EQ(kept[i].a, expected_kept[i].a);
+                EXPECT_EQ(kept[i].b, expected_kept[i].b);
+                EXPECT_EQ(kept[i].offset, expected_kept[i].offset);
+                EXPECT_TRUE(kept[i].rotor == expected_kept[i].rotor);
+                EXPECT_EQ(kept[i].keeps, KeptManifold::Keeps::kUnknown);
+            }
             EXPECT_EQ(bodies.rotor, row.bodies.rotor);
         }
         simulate(kRows);

@@ -54,6 +54,13 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
                                         static_cast<std::uint32_t>(i),
                                         normal(random),
                                         {normal(random), normal(random), 0, 1}});
+    for (std::uint32_t i = 0; i < (row % 4 == 0 ? bodies / 2 : 0); ++i) {
+        if (i % 3 == 0) made.memory.kept.emplace_back();
+        KeptManifold& manifold = made.memory.kept.back().manifolds.emplace_back();
+        manifold.a = i, manifold.b = i + 1;
+        manifold.offset = {normal(random), -0.0, 1, 5e-324};
+        manifold.rotor = {normal(random), {1, 2, normal(random), 4, 5, 6}, normal(random)};
+    }
     for (std::size_t i = 0; i < (row % 3 == 0 ? made.memory.impulses.size() : 0); ++i)
         made.memory.angular_impulses.push_back({normal(random), 1, -0.0, 0, 5e-324, 2});
     return made;

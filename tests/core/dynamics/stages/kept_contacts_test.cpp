@@ -1,0 +1,239 @@
+#include "core/dynamics/stages/kept_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/world.hpp"
+#include "tests/core/dynamics/builder.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace testing;
+
+/// The narrow phase of one pair at rest, from sub-step to sub-step.
+class PairAtRest {
+  public:
+    PairAtRest(const BodyType& a, const BodyType& b) {
+        Bodies bodies;
+        add(bodies, a);
+        add(bodies, b);
+        simulation_ = make_simulation(bodies, without_gravity());
+        begin_step(simulation_, step_, 1.0 / 240);
+        step_.velocity.assign(2, Vec4::Zero());
+        step_.rotor.resize(2);
+        step_.angular_velocity.assign(2, Bivector{});
+        step_.pairs = {{0, 1}};
+    }
+    void put(BodyId id, const Vec4& position, const Rotor& rotor) {
+        step_.position[id] = position, step_.rotor[id] = rotor;
+    }
+    std::vector<Contact> find_kept() {
+        std::vector<Contact> list;
+        begin_kept(step_, 1, step_.kept);
+        find_kept_contacts(simulation_, step_, {0, 1}, step_.last_kept, step_.kept[0], list);
+        step_.last_kept = step_.kept;
+        return list;
+    }
+    std::vector<Contact> find_anew() {
+        std::vector<Contact> list;
+        find_contacts(simulation_, step_, {0, 1}, list);
+        return list;
+    }
+    /// How far b may be moved against a [m].
+    double most() const {
+        const auto& types = simulation_.types;
+        return kKeptMotion / kSlop * std::min(types[0].slop, types[1].slop);
+    }
+    double radius() const { return simulation_.types[1].radius; }
+    const KeptManifold& manifold() const { return step_.kept.at(0).manifolds.at(0); }
+
+  private:
+    Simulation simulation_;
+    StepData step_;
+};
+
+BodyType regular_type(RegularPolychoron regular, double radius) {
+    BodyType type = box_type(Vec4::Ones());
+    Polychoron shape;
+    shape.regular = regular, shape.radius = radius;
+    complete(shape);
+    type.shape = shape;
+    return type;
+}
+
+double deepest(const std::vector<Contact>& contacts) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& c : contacts) least = std::min(least, c.separation);
+    return least;
+}
+
+Rotor small_rotor(std::mt19937_64& random, double angle) {
+    std::normal_distribution<> part;
+    const Bivector plane{part(random), part(random), part(random),
+                         part(random), part(random), part(random)};
+    return exp(-0.5 * angle / norm(plane) * plane);
+}
+
+/// Two bodies face to face, moved against each other by up to what is kept and anywhere together.
+TEST(KeptContacts, AreThoseOfANewSearch) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<> part(-0.3, 0.3);
+    const std::vector<BodyType> types = {box_type({1, 0.8, 0.6, 1.2}), box_type({2, 1, 1.5, 0.5}),
+                                         regular_type(RegularPolychoron::k24Cell, 0.7),
+                                         regular_type(RegularPolychoron::k8Cell, 0.8)};
+    int kept = 0;
+    double worst = 0, worst_turned = 0;
+    for (int trial = 0; trial < 4000; ++trial) {
+        const BodyType &a = types[random() % 4], &b = types[random() % 4];
+        PairAtRest pair(a, b);
+        const double gap = pair.most() * part(random);
+        const Vec4 offset{part(random), 0, part(random), part(random)};
+        const Vec4 up = Vec4::UnitY();
+        const double height = std::visit(
+            [&](const auto& s, const auto& t) {
+                return half_extent_along(s, up) + half_extent_along(t, up);
+            },
+            a.shape, b.shape);
+        const bool turns = trial % 2 == 1;
+        const Rotor turned = turns ? small_rotor(random, 1e-4) : Rotor{};
+        pair.put(0, Vec4::Zero(), Rotor{});
+        pair.put(1, offset + (height + gap) * up, turned);
+        const std::vector<Contact> first = pair.find_kept();
+        if (first.empty() || pair.manifold().count == 0) continue;  // vertex or edge below
+        ++kept;
+
+        const Rotor together = small_rotor(random, 2);
+        const Vec4 far = random_vector(random, 5);
+        const double angle = turns ? 0.4 * pair.most() / pair.radius() : 0;
+        const Rotor own = turns ? small_rotor(random, angle) : Rotor{};
+        const Vec4 moved = 0.4 * pair.most() * random_vector(random, 1).normalized();
+        pair.put(0, far, together);
+        pair.put(1, far + rotate(together, offset + (height + gap) * up + moved),
+                 together * own * turned);
+        const KeptManifold before = pair.manifold();
+        const std::vector<Contact> now = pair.find_kept(), anew = pair.find_anew();
+        EXPECT_EQ(pair.manifold().offset, before.offset);  // not found again
+        ASSERT_FALSE(now.empty());
+        ASSERT_FALSE(anew.empty());
+        const double difference = std::abs(deepest(now) - deepest(anew));
+        EXPECT_LT((now[0].normal - anew[0].normal).norm(), 2 * (1e-4 + angle) + 1e-12) << trial;
+        if (!turns) worst = std::max(worst, difference);
+        // Seen along the face of the one or of the other, which are as good.
+        if (turns)
+            worst_turned = std::max(worst_turned, difference / ((1e-4 + angle) * pair.radius()));
+    }
+    EXPECT_GT(kept, 1000);
+    EXPECT_LT(worst, 1e-13);
+    EXPECT_LT(worst_turned, 1);
+}
+
+/// Together anywhere: the same points as before, to rounding.
+TEST(KeptContacts, GoAlongWithBothBodies) {
+    std::mt19937_64 random(6);
+    for (int trial = 0; trial < 1000; ++trial) {
+        PairAtRest pair(box_type({1, 0.8, 0.6, 1.2}), box_type({0.7, 0.8, 0.6, 1}));
+        const Vec4 offset{0.1, 0.799, 0.05, -0.2};
+        pair.put(0, Vec4::Zero(), Rotor{});
+        pair.put(1, offset, Rotor{});
+        const std::vector<Contact> first = pair.find_kept();
+        ASSERT_EQ(first.size(), 8u);
+        const Rotor together = small_rotor(random, 3);
+        const Vec4 far = random_vector(random, 100);
+        pair.put(0, far, together);
+        pair.put(1, far + rotate(together, offset), together);
+        const std::vector<Contact> now = pair.find_kept();
+        ASSERT_EQ(now.size(), 8u);
+        for (std::size_t i = 0; i < 8; ++i) {
+            EXPECT_EQ(now[i].feature, first[i].feature);
+            EXPECT_NEAR(now[i].separation, first[i].separation, 1e-13);
+            EXPECT_LT((now[i].normal - rotate(together, first[i].normal)).norm(), 1e-14);
+            EXPECT_LT((now[i].point - far - rotate(together, first[i].point)).norm(), 1e-12);
+        }
+    }
+}
+
+TEST(KeptContacts, AreFoundAnewOnceBodiesHaveMoved) {
+    PairAtRest pair(box_type(Vec4::Ones()), box_type(Vec4::Ones()));
+    pair.put(0, Vec4::Zero(), Rotor{});
+    pair.put(1, {0, 0.999, 0, 0}, Rotor{});
+    pair.find_kept();
+    for (const double times : {0.9, 1.1}) {
+        const Vec4 there{times * pair.most(), 0.999, 0, 0};
+        pair.put(1, there, Rotor{});
+        pair.find_kept();
+        EXPECT_EQ(pair.manifold().offset == there, times > 1);
+    }
+    const Rotor turned = exp(Bivector{0, 0, 0, 0, 0, -0.6 * pair.most() / pair.radius()});
+    pair.put(1, {1.1 * pair.most(), 0.999, 0, 0}, turned);
+    pair.find_kept();
+    EXPECT_TRUE(pair.manifold().rotor == turned);
+}
+
+/// Rows of boxes, each row moved by half a box.
+Bodies wall(int rows, int columns) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    BodyType box = box_type({1, 0.5, 0.5, 0.5}, 125);
+    box.friction = 0.5;
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+            const Vec4 place{1.05 * column + (row % 2 == 0 ? 0 : 0.25), 0.5 * (row + 0.5), 0, 0};
+            if (row + column == 0)
+                add(bodies, box, place);
+            else
+                add(bodies, 1u, place);
+        }
+    return bodies;
+}
+
+/// A file has only where manifolds were found: all else is found again, to the same bits.
+TEST(KeptContacts, FollowFromWhereTheyWereFound) {
+    for (const int substeps : {1, 2}) {
+        PhysicsSettings settings;
+        settings.substeps = substeps;
+        World world(wall(5, 4), settings);
+        run(world, 40);
+        std::size_t points = 0;
+        for (const KeptManifolds& list : world.memory().kept) points += list.points.size();
+        EXPECT_GT(points, 200u);
+
+        World again(world.bodies(), settings);
+        again.memory() = world.memory();
+        again.memory().kept.clear();
+        again.memory().kept.resize(3);  // lists may be shared out in any way
+        for (const KeptManifolds& list : world.memory().kept)
+            for (KeptManifold m : list.manifolds) {
+                m.keeps = KeptManifold::Keeps::kUnknown;
+                m.first = 12345, m.count = 7;
+                again.memory().kept[m.a < 8 ? 0 : 2].manifolds.push_back(m);
+            }
+        run(world, 40);
+        run(again, 40);
+        EXPECT_TRUE(same_bits(world.bodies(), again.bodies()));
+        EXPECT_TRUE(same_values(world.memory(), again.memory()));
+
+        World without(world.bodies(), settings);
+        without.memory() = world.memory();
+        without.memory().kept.clear();
+        run(world, 40);
+        run(without, 40);
+        EXPECT_FALSE(same_bits(world.bodies(), without.bodies()));  // so it is state
+    }
+}
+
+/// Twenty rows high, half a metre thick: it swayed by 10 mm/s for many seconds.
+TEST(Wall, ComesToRestAtTheDefaults) {
+    World world(wall(20, 10), PhysicsSettings{});
+    StepReport report;
+    for (int i = 0; i < 480; ++i) report = world.step(1.0 / 240);
+    double sum = 0;
+    for (const Vec4& velocity : world.bodies().velocity) sum += velocity.norm();
+    EXPECT_LT(sum / 200, 2e-3);
+    EXPECT_LT(report.penetration, 1e-3);
+    EXPECT_LT((world.bodies().position.back() - wall(20, 10).position.back()).norm(), 0.01);
+}
+
+}  // namespace
+}  // namespace tesserae
