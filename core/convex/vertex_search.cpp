@@ -9,7 +9,7 @@ namespace {
 using simd::Double4;
 
 /// A gap that is this part less than the distance is rounding here.
-constexpr double kAsNear = 1e-11;
+constexpr double kSameGap = 1e-11;
 /// Squared, of a point outside of the span of the others: less is in it.
 constexpr double kInSpan = 1e-14;
 /// In the first rounds the direction leans toward the guess: so few points tell little of where the
@@ -21,7 +21,7 @@ constexpr double kOwn = 0.4;
 /// Most take 4 to 9; what goes in circles by rounding ends here.
 constexpr int kMostRounds = 40;
 
-[[gnu::always_inline]] inline Double4 four_of(const double* from) {
+[[gnu::always_inline]] inline Double4 loaded(const double* from) {
     Double4 v;
     std::memcpy(&v, from, sizeof v);
     return v;
@@ -49,8 +49,8 @@ constexpr Double4 kUnit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0
 
 VertexSearch::VertexSearch(const PlacedHull& a, const PlacedHull& b) : a_(a), b_(b) {
     const auto columns = [](const Mat4& m) {
-        return std::array<Double4, 4>{four_of(m.data()), four_of(m.data() + 4),
-                                      four_of(m.data() + 8), four_of(m.data() + 12)};
+        return std::array<Double4, 4>{loaded(m.data()), loaded(m.data() + 4), loaded(m.data() + 8),
+                                      loaded(m.data() + 12)};
     };
     const Mat4 back = a.turn.transpose();
     const std::array<Double4, 4> to_a = columns(back), of_b = columns(b.turn);
@@ -58,15 +58,15 @@ VertexSearch::VertexSearch(const PlacedHull& a, const PlacedHull& b) : a_(a), b_
     for (std::size_t i = 0; i < 4; ++i)
         turn_back_[i] = Double4{turn_[0][i], turn_[1][i], turn_[2][i], turn_[3][i]};
     const Vec4 between = b.centre - a.centre;
-    between_ = combined(to_a, four_of(between.data()));
+    between_ = combined(to_a, loaded(between.data()));
 }
 
 VertexSearch::Point VertexSearch::support(Double4 toward_origin) const {
     const std::uint32_t of_a = a_.corners.largest_at(vector_of(toward_origin)).number;
     const std::uint32_t of_b =
         b_.corners.largest_at(vector_of(combined(turn_back_, -toward_origin))).number;
-    const Double4 on_a = four_of(a_.vertices[of_a].data());
-    const Double4 on_b = between_ + combined(turn_, four_of(b_.vertices[of_b].data()));
+    const Double4 on_a = loaded(a_.vertices[of_a].data());
+    const Double4 on_b = between_ + combined(turn_, loaded(b_.vertices[of_b].data()));
     return {on_a - on_b, {of_a, of_b}};
 }
 
@@ -193,7 +193,7 @@ bool VertexSearch::is_enough(Double4 toward, const Point& point, double enough) 
 
 VertexSearch::End VertexSearch::run(const Vec4& guess, double enough) {
     const Vec4 own_guess = a_.turn.transpose() * guess;
-    const Double4 ahead = four_of(own_guess.data());
+    const Double4 ahead = loaded(own_guess.data());
     Point point = support(ahead);
     if (is_enough(ahead, point, enough)) return End::kFar;
     start(point);
@@ -203,7 +203,7 @@ VertexSearch::End VertexSearch::run(const Vec4& guess, double enough) {
         point = support(toward);
         if (is_enough(toward, point, enough)) return End::kFar;
         const double slope = dot(sum_, point.at);
-        if (slope < 1 - kAsNear) {
+        if (slope < 1 - kSameGap) {
             if (take_in(point, slope)) continue;
             gather();
             found_[static_cast<std::size_t>(count_++)] = point.pair;
