@@ -67,7 +67,15 @@ ConvexSeparation separation_of_pair(const ConvexPair& pair, const Vec4& guess) {
                            std::numeric_limits<double>::infinity());
 }
 
-/// How often the general way asks for both bodies' farthest points.
+/// The same by their support functions alone, which is the way of any two convex bodies.
+template <class S>
+ConvexSeparation separation_by_supports(const ConvexPair& pair, const Vec4& guess) {
+    const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
+    const PlacedSolid<S> in_a(a, pair.a, pair.a.position), in_b(b, pair.b, pair.a.position);
+    return separation_of(in_a.core(), in_b.core(), guess, bounding_radius(a) + bounding_radius(b));
+}
+
+/// How often that asks for both bodies' farthest points.
 template <class S>
 int rounds_of(const ConvexPair& pair, const Vec4& guess) {
     const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
