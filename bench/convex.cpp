@@ -147,8 +147,13 @@ void add_distances(Table& table, const std::string& name, const ConvexList& list
         double calls = 0;
         for (const ConvexPair& p : *list)
             calls += rounds_of<S>(p, is_warm ? p.last_normal : p.between());
-        table.note(name + way, "rounds_per_pair", calls / static_cast<double>(list->size()));
+        table.note(name + way, "rounds_per_pair_by_supports",
+                   calls / static_cast<double>(list->size()));
     };
+    if constexpr (std::derived_from<S, HullShape>)
+        add_calls(table, name + "/distance_by_supports", list, [](const ConvexPair& pair) {
+            return separation_by_supports<S>(pair, pair.between()).distance;
+        });
     count_rounds("/distance", false);
     if ((*list)[0].last_normal.isZero(0)) return;
     add_calls(table, name + "/distance_warm", list, [](const ConvexPair& pair) {

@@ -37,18 +37,16 @@ constexpr Range kApart{0.01, 0.1}, kOverlapping{-0.02, -0.001};
 /// By how much bodies turn about each other in a step: 1 rad/s at 240 steps a second [rad].
 constexpr double kHair = 1.0 / 240;
 
-/// The core of a placed body, about an origin.
+/// A body of a pair about an origin, as the general pair function sees it.
 template <class S>
-struct PlacedCore {
+struct PlacedSolid {
     const S& shape;
     Mat4 turn;
     Vec4 offset;
 
-    PlacedCore(const S& of, const ConvexSolid& solid, const Vec4& origin)
+    PlacedSolid(const S& of, const ConvexSolid& solid, const Vec4& origin)
         : shape(of), turn(to_matrix(solid.rotor)), offset(solid.position - origin) {}
-    Vec4 operator()(const Vec4& direction) const {
-        return offset + turn * core_support(shape, turn.transpose() * direction);
-    }
+    PlacedCore<S> core() const { return {shape, turn, offset}; }
     /// The same as convex_contacts() wants it.
     void put_piece(const Vec4& direction, SurfacePiece& piece) const {
         piece_along(shape, turn.transpose() * direction, piece);
@@ -64,21 +62,30 @@ struct PlacedCore {
 template <class S>
 ConvexSeparation separation_of_pair(const ConvexPair& pair, const Vec4& guess) {
     const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
-    const PlacedCore<S> core_a(a, pair.a, pair.a.position), core_b(b, pair.b, pair.a.position);
-    return separation_of(core_a, core_b, guess, bounding_radius(a) + bounding_radius(b));
+    const PlacedSolid<S> in_a(a, pair.a, pair.a.position), in_b(b, pair.b, pair.a.position);
+    return core_separation(in_a.core(), in_b.core(), guess, bounding_radius(a) + bounding_radius(b),
+                           std::numeric_limits<double>::infinity());
+}
+
+/// The same by their support functions alone, which is the way of any two convex bodies.
+template <class S>
+ConvexSeparation separation_by_supports(const ConvexPair& pair, const Vec4& guess) {
+    const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
+    const PlacedSolid<S> in_a(a, pair.a, pair.a.position), in_b(b, pair.b, pair.a.position);
+    return separation_of(in_a.core(), in_b.core(), guess, bounding_radius(a) + bounding_radius(b));
 }
 
 /// How often that asks for both bodies' farthest points.
 template <class S>
 int rounds_of(const ConvexPair& pair, const Vec4& guess) {
     const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
-    const PlacedCore<S> core_a(a, pair.a, pair.a.position), core_b(b, pair.b, pair.a.position);
+    const PlacedSolid<S> in_a(a, pair.a, pair.a.position), in_b(b, pair.b, pair.a.position);
     int rounds = 0;
     const auto counted = [&](const Vec4& direction) -> Vec4 {
         ++rounds;
-        return core_a(direction);
+        return in_a.core()(direction);
     };
-    separation_of(counted, core_b, guess, bounding_radius(a) + bounding_radius(b));
+    separation_of(counted, in_b.core(), guess, bounding_radius(a) + bounding_radius(b));
     return rounds;
 }
 
@@ -86,15 +93,16 @@ int rounds_of(const ConvexPair& pair, const Vec4& guess) {
 template <class S>
 void contacts_from(const ConvexPair& pair, const Vec4& guess, std::vector<Contact>& list) {
     const S &a = std::get<S>(*pair.a.shape), &b = std::get<S>(*pair.b.shape);
-    const PlacedCore<S> core_a(a, pair.a, pair.a.position), core_b(b, pair.b, pair.a.position);
-    const auto piece_a = [&](const Vec4& n, SurfacePiece& piece) { core_a.put_piece(n, piece); };
-    const auto piece_b = [&](const Vec4& n, SurfacePiece& piece) { core_b.put_piece(n, piece); };
-    const auto level_a = [&](const Vec4& p) { return core_a.level(p); };
-    const auto level_b = [&](const Vec4& p) { return core_b.level(p); };
+    const PlacedSolid<S> in_a(a, pair.a, pair.a.position), in_b(b, pair.b, pair.a.position);
+    const auto piece_a = [&](const Vec4& n, SurfacePiece& piece) { in_a.put_piece(n, piece); };
+    const auto piece_b = [&](const Vec4& n, SurfacePiece& piece) { in_b.put_piece(n, piece); };
+    const auto level_a = [&](const Vec4& p) { return in_a.level(p); };
+    const auto level_b = [&](const Vec4& p) { return in_b.level(p); };
     PairContacts out{0, 1, false, list};
     const double size = bounding_radius(a) + bounding_radius(b);
+    const PlacedCore<S> core_a = in_a.core(), core_b = in_b.core();
     convex_contacts({core_a, 0, piece_a, level_a}, {core_b, 0, piece_b, level_b},
-                    separation_of(core_a, core_b, guess, size, 0), size, pair.a.position, 0, out);
+                    core_separation(core_a, core_b, guess, size, 0), size, pair.a.position, 0, out);
 }
 
 /// Uniformly random but for details; in three dimensions w stays.

@@ -4,6 +4,7 @@
 
 #include "core/contact/convex_contacts.hpp"
 #include "core/convex/placed_balls.hpp"
+#include "core/convex/placed_hull.hpp"
 #include "core/shape/ball_product.hpp"
 #include "core/shape/hull_shape.hpp"
 #include "core/shape/hyperbox.hpp"
@@ -61,6 +62,38 @@ constexpr bool kAreBallCores = HasBallCore<A>&& HasBallCore<B> &&
                                (std::derived_from<A, BallProduct> ||
                                 std::derived_from<B, BallProduct>);
 
+/// Cores that are polytopes of many vertices.
+inline PlacedHull placed_core(const HullShape& shape, const Mat4& turn, const Vec4& centre) {
+    return {shape.body->hull.vertices, shape.body->corners, turn, centre};
+}
+
+/// A core somewhere, as a support function.
+template <class S>
+struct PlacedCore {
+    const S& shape;
+    const Mat4& turn;
+    Vec4 centre;
+
+    Vec4 operator()(const Vec4& direction) const {
+        return centre + turn * core_support(shape, turn.transpose() * direction);
+    }
+};
+
+/// The separation of two cores, by the best way that there is for them.
+/// @param guess, size, enough   see convex_separation.hpp
+template <class A, class B>
+ConvexSeparation core_separation(const PlacedCore<A>& a, const PlacedCore<B>& b, const Vec4& guess,
+                                 double size, double enough) {
+    if constexpr (kAreBallCores<A, B>)
+        return separation_of(placed_core(a.shape, a.turn, a.centre),
+                             placed_core(b.shape, b.turn, b.centre));
+    else if constexpr (std::derived_from<A, HullShape> && std::derived_from<B, HullShape>)
+        return separation_of(placed_core(a.shape, a.turn, a.centre),
+                             placed_core(b.shape, b.turn, b.centre), guess, size, enough);
+    else
+        return separation_of(a, b, guess, size, enough);
+}
+
 /// Moves a piece from the body's frame.
 void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece);
 
@@ -72,12 +105,8 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
     const Vec4 between = pose_b.position - pose_a.position;
     const double size = bounding_radius(a) + bounding_radius(b);
     if (!(stable_norm(between) - size <= margin)) return;
-    const auto core_a = [&](const Vec4& direction) -> Vec4 {
-        return turn_a * core_support(a, turn_a.transpose() * direction);
-    };
-    const auto core_b = [&](const Vec4& direction) -> Vec4 {
-        return between + turn_b * core_support(b, turn_b.transpose() * direction);
-    };
+    const PlacedCore<A> core_a{a, turn_a, Vec4::Zero()};
+    const PlacedCore<B> core_b{b, turn_b, between};
     const auto piece_a = [&](const Vec4& direction, SurfacePiece& piece) {
         piece_along(a, turn_a.transpose() * direction, piece);
         move_to(turn_a, Vec4::Zero(), piece);
@@ -94,16 +123,9 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
         const Vec4 own = turn_b.transpose() * (point - between);
         return {signed_distance(b, own) + core_radius(b), turn_b * normal(b, own)};
     };
-    const auto nearest = [&] {
-        if constexpr (kAreBallCores<A, B>) {
-            return separation_of(placed_core(a, turn_a, Vec4::Zero()),
-                                 placed_core(b, turn_b, between));
-        } else {
-            const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
-            return separation_of(core_a, core_b, guess, size,
-                                 margin + core_radius(a) + core_radius(b));
-        }
-    }();
+    const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
+    const ConvexSeparation nearest =
+        core_separation(core_a, core_b, guess, size, margin + core_radius(a) + core_radius(b));
     convex_contacts({core_a, core_radius(a), piece_a, level_a},
                     {core_b, core_radius(b), piece_b, level_b}, nearest, size, pose_a.position,
                     margin, out);

@@ -230,17 +230,8 @@ KnownGap deepest_overlap(const MinkowskiDifference& difference, Simplex& simplex
         .run(simplex, least.facet, known, known > 0 && !least.is_exact);
 }
 
-}  // namespace
-
-ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
-                               double enough) {
-    MinkowskiDifference difference(a, b, size);
-    const bool is_direction = guess.allFinite() && !guess.isZero(0);
-    const DifferencePoint first =
-        difference.support(is_direction ? stable_normalized(guess) : Vec4(Vec4::UnitX()));
-    difference.note_coordinates(first);
-    Simplex simplex;
-    simplex.start(Vec4::Zero(), first);
+ConvexSeparation separation_from(const MinkowskiDifference& difference, Simplex& simplex,
+                                 double enough) {
     KnownGap best = approach_target(difference, simplex, enough / difference.unit());
     const double distance = simplex.contains_target() ? 0 : simplex.nearest().norm();
     if (best.normal.isZero(0) || simplex.contains_target() ||
@@ -254,6 +245,31 @@ ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& g
     const Vec4 middle = (on_a + on_b) / 2, half = best.normal * (best.gap / 2);
     const double unit = difference.unit();
     return {best.normal, unit * best.gap, unit * (middle - half), unit * (middle + half)};
+}
+
+}  // namespace
+
+ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
+                               double enough) {
+    MinkowskiDifference difference(a, b, size);
+    const bool is_direction = guess.allFinite() && !guess.isZero(0);
+    const DifferencePoint first =
+        difference.support(is_direction ? stable_normalized(guess) : Vec4(Vec4::UnitX()));
+    difference.note_coordinates(first);
+    Simplex simplex;
+    simplex.start(Vec4::Zero(), first);
+    return separation_from(difference, simplex, enough);
+}
+
+ConvexSeparation separation_of(const Support& a, const Support& b,
+                               std::span<const VertexPair> first, double size, double enough) {
+    MinkowskiDifference difference(a, b, size);
+    std::array<DifferencePoint, 5> points;
+    for (std::size_t i = 0; i < first.size(); ++i) points[i] = difference.point_of(first[i]);
+    difference.note_coordinates(points[0]);
+    Simplex simplex;
+    simplex.start(Vec4::Zero(), std::span(points.data(), first.size()));
+    return separation_from(difference, simplex, enough);
 }
 
 }  // namespace tesserae

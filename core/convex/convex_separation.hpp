@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include "core/algebra/vector.hpp"
 #include "core/function_ref.hpp"
@@ -46,6 +47,17 @@ constexpr double kRoundOverlapAccuracy = 1e-3;
 /// Sources: Gilbert, Johnson, Keerthi 1988 for what is apart, with the nearest point of a simplex
 /// after Wolfe 1976 (see Simplex); van den Bergen 2001 for the overlap (see ExpandingPolytope).
 ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
+                               double enough = std::numeric_limits<double>::infinity());
+
+/// A point of each of two bodies, a farthest one along some direction.
+struct VertexPair {
+    Vec4 on_a, on_b;
+};
+/// The same from points of both bodies that are known to be near the end. The better they are the
+/// less is left to do; any will do.
+/// @param first   1 to 5 pairs, as the supports return them; the heaviest best comes first
+ConvexSeparation separation_of(const Support& a, const Support& b,
+                               std::span<const VertexPair> first, double size,
                                double enough = std::numeric_limits<double>::infinity());
 
 /// The separation of the bodies that are all within a radius of two convex cores, of which it is

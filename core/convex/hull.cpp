@@ -93,6 +93,9 @@ struct Reduced {
     }
 };
 
+constexpr const char* kNoContent =
+    "the points lie in one three-dimensional space, or nearly: the body has no content";
+
 void require(bool condition, const std::string& message) {
     if (!condition) throw InputError(message);
 }
@@ -239,8 +242,7 @@ Hull hull_of(std::span<const Vec4> points) {
             fmt::format("{} different points; a body in four dimensions has at least 5",
                         reduced.points.size()));
     const QhullFacets facets = qhull_facets(reduced.points);
-    require(!facets.planes.empty(),
-            "the points lie in one three-dimensional space, or nearly: the body has no content");
+    require(!facets.planes.empty(), kNoContent);
     Hull hull;
     for (const std::size_t i : facets.vertices) hull.vertices.push_back(reduced.points[i]);
     require(hull.vertices.size() <= kMostVertices,
@@ -259,6 +261,8 @@ Hull hull_of(std::span<const Vec4> points) {
                     "the hull has too many vertices");
 
     const Integrals about_mean = connect(hull.vertices, hull.cells);
+    // Of what is a hair thicker than Qhull takes for flat, cells may be one to our accuracy.
+    require(about_mean.content > 0, kNoContent);
     const Vec4 centre = about_mean.first / about_mean.content;
     const double size = reduced.size;
     shift(centre, hull.vertices, hull.cells);

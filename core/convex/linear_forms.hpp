@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/algebra/vector.hpp"
@@ -30,24 +31,20 @@ class LinearForms {
     };
     Largest largest_at(const Vec4& x) const {
         using namespace simd;
-        Double4 best = all_four(-std::numeric_limits<double>::infinity());
-        Mask4 place = {};
-        for (std::size_t i = 0; i < fours_.size(); ++i) {
-            const Double4 value = slopes(fours_[i], x) - fours_[i].offset;
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        Double4 best = all_four(-kInfinity), place = {};
+        Double4 here = {0, 1, 2, 3};
+        for (const Four& four : fours_) {
+            const Double4 value = slopes(four, x) - four.offset;
             const Mask4 is_larger = value > best;
-            const auto here = static_cast<long long>(i);
             best = is_larger ? value : best;
-            place = is_larger ? Mask4{here, here, here, here} : place;
+            place = is_larger ? here : place;
+            here += 4;
         }
-        Largest largest = {0, best[0]};
-        largest.number = static_cast<std::uint32_t>(4 * place[0]);
-        for (std::uint32_t lane = 1; lane < 4; ++lane) {
-            const auto number = static_cast<std::uint32_t>(4 * place[lane]) + lane;
-            if (best[lane] > largest.value ||
-                (best[lane] == largest.value && number < largest.number))
-                largest = {number, best[lane]};
-        }
-        return largest;
+        // Which lane has it is anyone's guess: no branches.
+        const double value = largest_lane(best);
+        const double number = smallest_lane(best == value ? place : all_four(kInfinity));
+        return {static_cast<std::uint32_t>(number), value};
     }
 
     /// Where on a ray all of them are at most 0: from `enter` to `leave`, nowhere if that is less.

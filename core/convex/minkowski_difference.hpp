@@ -25,7 +25,10 @@ class MinkowskiDifference {
 
     /// The farthest point along a direction.
     DifferencePoint support(const Vec4& direction) const {
-        const Vec4 on_a = to_units_ * a_(direction), on_b = to_units_ * b_(-direction);
+        return point_of({a_(direction), b_(-direction)});
+    }
+    DifferencePoint point_of(const VertexPair& pair) const {
+        const Vec4 on_a = to_units_ * pair.on_a, on_b = to_units_ * pair.on_b;
         return {on_a - on_b, on_a};
     }
     /// The length of the unit [m].

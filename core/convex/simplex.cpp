@@ -89,6 +89,26 @@ void Simplex::start(const Vec4& target, const DifferencePoint& point) {
     contains_target_ = is_careful_ = false;
 }
 
+void Simplex::start(const Vec4& target, std::span<const DifferencePoint> points) {
+    start(target, points[0]);
+    if (points.size() == 1) return;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        points_[i] = points[i];
+        seen_[i] = points[i].at - target;
+        weight_[i] = 0;
+    }
+    count_ = static_cast<int>(points.size());
+    double weight[kMaxPoints];
+    Vec4 nearest;
+    if (find_affine_nearest(weight, nearest) && is_inside(weight)) {
+        take(weight, nearest);
+        return;
+    }
+    // One after the other.
+    count_ = 1;
+    for (std::size_t i = 1; i < points.size() && !contains_target_; ++i) add(points[i], 0);
+}
+
 bool Simplex::add(const DifferencePoint& point, double at_least) {
     if (count_ == kMaxPoints) return false;
     for (int i = 0; i < count_; ++i)
@@ -105,20 +125,29 @@ bool Simplex::add(const DifferencePoint& point, double at_least) {
             merge_last();
             continue;
         }
-        bool inside = true;
-        for (int i = 0; i < count_; ++i) inside = inside && weight[i] > 0;
+        const bool inside = is_inside(weight);
         if (inside && nearest.norm() < at_least) {
             merge_last();
             continue;
         }
         if (inside) {
-            for (int i = 0; i < count_; ++i) weight_[static_cast<std::size_t>(i)] = weight[i];
-            nearest_ = nearest;
-            contains_target_ = count_ == kMaxPoints;
+            take(weight, nearest);
             return true;
         }
         step_toward(weight);
     }
+}
+
+bool Simplex::is_inside(const double* weight) const {
+    bool inside = true;
+    for (int i = 0; i < count_; ++i) inside = inside && weight[i] > 0;
+    return inside;
+}
+
+void Simplex::take(const double* weight, const Vec4& nearest) {
+    for (int i = 0; i < count_; ++i) weight_[static_cast<std::size_t>(i)] = weight[i];
+    nearest_ = nearest;
+    contains_target_ = count_ == kMaxPoints;
 }
 
 Simplex::Edges Simplex::edges_from_heaviest() const {
@@ -231,11 +260,8 @@ bool Simplex::refine() {
     is_careful_ = true;
     double weight[kMaxPoints];
     Vec4 nearest;
-    if (!find_affine_nearest(weight, nearest)) return false;
-    for (int i = 0; i < count_; ++i)
-        if (!(weight[i] > 0)) return false;
-    for (int i = 0; i < count_; ++i) weight_[static_cast<std::size_t>(i)] = weight[i];
-    nearest_ = nearest;
+    if (!find_affine_nearest(weight, nearest) || !is_inside(weight)) return false;
+    take(weight, nearest);
     return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/convex/minkowski_difference.hpp"
 
@@ -23,6 +24,8 @@ class Simplex {
   public:
     /// Starts anew with one point.
     void start(const Vec4& target, const DifferencePoint& point);
+    /// Starts anew with 1 to 5 points; those are kept that the nearest point is in the inside of.
+    void start(const Vec4& target, std::span<const DifferencePoint> points);
     /// Takes in a point. False: that brought the nearest point no nearer.
     bool add(const DifferencePoint& point, double at_least);
 
@@ -55,6 +58,8 @@ class Simplex {
     bool find_upright(Edges& edges, Vec4& nearest) const;
     bool find_orthonormal(Edges& edges, Vec4& nearest) const;
     bool find_affine_nearest(double* weight, Vec4& nearest) const;
+    bool is_inside(const double* weight) const;
+    void take(const double* weight, const Vec4& nearest);
     void step_toward(const double* weight);
     void drop(int i);
     void merge_last();

@@ -129,6 +129,14 @@ TEST(Hull, RefusesWhatIsFlatOrTooMuch) {
         p -= (n.dot(p) - 3) * n;
     }
     EXPECT_NE(error_of_hull(flat).find("three-dimensional"), std::string::npos);
+    // Thicker than flat by what planes may differ and be one.
+    const Vec4 hair(0, 1e-12, 0, 0);
+    const std::vector<Vec4> thin = {{-1, -1, -1, 0.01},
+                                    Vec4(-1, 0, 1, 0.01) + 0.5 * hair,
+                                    Vec4(0, -1, 0, -0.01) + hair,
+                                    {1, 0, 1, -0.01},
+                                    {1, 1, 1, 0.01}};
+    EXPECT_NE(error_of_hull(thin).find("three-dimensional"), std::string::npos);
     // Neighbourly: each pair of vertices has an edge, and 10^4 of them fifty million cells.
     for (int i = 0; i < 10000; ++i) {
         const double t = 2e-4 * std::numbers::pi * i;
