@@ -14,11 +14,12 @@
 #   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
+#   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, twelve minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-all=(accuracy speed convex leave-out rays extremes light picture bullet peers scaling)
+all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest scaling)
 on_demand=(cycles large scaling-million)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
@@ -159,6 +160,12 @@ peers() {
     done | awk 'NR == 1 || !/^scene,/' >"$raw/peers.csv"
     head_of peers "$1"
     cat "$raw/head.txt" "$raw/peers.csv" >"$results/peers.csv"
+}
+
+rest() {
+    "$folder/bench/rest" >"$raw/rest.csv"
+    head_of rest "$1"
+    /usr/bin/python3 -B "$root/bench/report_rest.py" "$raw/head.txt" "$raw/rest.csv" "$results"
 }
 
 # scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: 1, 2, 4, ... threads in turn, five times each.

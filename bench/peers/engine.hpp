@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/peers/scene.hpp"
+#include "core/dynamics/state/settings.hpp"
 
 namespace tesserae::bench {
 
@@ -17,6 +18,7 @@ struct PeerContacts {
 class PeerEngine {
   public:
     virtual ~PeerEngine() = default;
+    /// By kPeerStep, unless it was made with settings that say otherwise.
     virtual void step() = 0;
     virtual PeerContacts contacts() = 0;
     /// Deepest overlap that the engine found in the last step [m], >= 0.
@@ -30,6 +32,8 @@ using MakePeer = std::unique_ptr<PeerEngine> (*)(const PeerScene&, int iteration
 std::unique_ptr<PeerEngine> make_tesserae(const PeerScene& scene, int iterations);
 /// That many at most, until the default tolerance is reached.
 std::unique_ptr<PeerEngine> make_tesserae_at_defaults(const PeerScene& scene, int iterations);
+/// With settings of its own, of which gravity alone is replaced.
+std::unique_ptr<PeerEngine> make_tesserae_with(const PeerScene& scene, PhysicsSettings settings);
 /// In the precision of the Bullet that the program is linked with.
 extern const char* const kBulletName;
 /// One friction direction at a point, that of the slip (Bullet's default).

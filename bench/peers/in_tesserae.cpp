@@ -27,7 +27,6 @@ Bodies bodies_of(const PeerScene& scene) {
 
 PhysicsSettings settings_of(int iterations, double tolerance) {
     PhysicsSettings settings;
-    settings.gravity = {0, -kPeerGravity, 0, 0};
     settings.steps_per_second = 1 / kPeerStep;
     settings.iterations = iterations;
     settings.tolerance = tolerance;
@@ -36,13 +35,11 @@ PhysicsSettings settings_of(int iterations, double tolerance) {
 
 class InTesserae : public PeerEngine {
   public:
-    InTesserae(const PeerScene& scene, int iterations, double tolerance)
-        : count_(scene.size()),
-          settings_(settings_of(iterations, tolerance)),
-          world_(bodies_of(scene), settings_) {}
+    InTesserae(const PeerScene& scene, const PhysicsSettings& settings)
+        : count_(scene.size()), settings_(settings), world_(bodies_of(scene), settings_) {}
 
     void step() override {
-        threads_.run([&] { report_ = world_.step(kPeerStep); });
+        threads_.run([&] { report_ = world_.step(1 / settings_.steps_per_second); });
     }
     PeerContacts contacts() override {
         StageCopy found(Stage::kBuildIslands);
@@ -99,10 +96,10 @@ class InTesserae : public PeerEngine {
         settings.iterations = iterations;
         parallel::ParallelWorld world(world_.bodies(), settings);
         world.memory() = world_.memory();
-        world.step(kPeerStep);
+        world.step(1 / settings.steps_per_second);
         world.forget_hints();
         world.observe(&observer);
-        world.step(kPeerStep);
+        world.step(1 / settings.steps_per_second);
     }
 
     std::size_t count_;
@@ -114,12 +111,17 @@ class InTesserae : public PeerEngine {
 
 }  // namespace
 
+std::unique_ptr<PeerEngine> make_tesserae_with(const PeerScene& scene, PhysicsSettings settings) {
+    settings.gravity = {0, -kPeerGravity, 0, 0};
+    return std::make_unique<InTesserae>(scene, settings);
+}
+
 std::unique_ptr<PeerEngine> make_tesserae(const PeerScene& scene, int iterations) {
-    return std::make_unique<InTesserae>(scene, iterations, 0);
+    return make_tesserae_with(scene, settings_of(iterations, 0));
 }
 
 std::unique_ptr<PeerEngine> make_tesserae_at_defaults(const PeerScene& scene, int iterations) {
-    return std::make_unique<InTesserae>(scene, iterations, PhysicsSettings{}.tolerance);
+    return make_tesserae_with(scene, settings_of(iterations, PhysicsSettings{}.tolerance));
 }
 
 StageTimes stage_times(PeerEngine& tesserae) {

@@ -22,6 +22,13 @@ PeerKind sphere_kind(int dimension, double radius) {
     return kind;
 }
 
+PeerKind box_kind(int dimension, const Vec4& sides) {
+    PeerKind kind;
+    kind.sides = sides;
+    kind.mass = kDensity * sides.head(dimension).prod();
+    return kind;
+}
+
 PeerScene empty_scene(const std::string& name, int dimension) {
     PeerScene scene;
     scene.name = name;
@@ -68,10 +75,7 @@ PeerScene box_wall(int dimension, int count) {
     constexpr double kSpacing = 1.05;
     PeerScene scene = empty_scene("box_wall", dimension);
     scene.settling_steps = 240;
-    PeerKind box;
-    box.sides = {1, 0.5, 0.5, 0.5};
-    box.mass = kDensity * box.sides.head(dimension).prod();
-    scene.kinds.push_back(box);
+    scene.kinds.push_back(box_kind(dimension, {1, 0.5, 0.5, 0.5}));
 
     const int columns = count / kRows;
     scene.half_width = 0.5 * kSpacing * (columns + 1);
@@ -79,7 +83,34 @@ PeerScene box_wall(int dimension, int count) {
         for (int column = 0; column < columns; ++column) {
             const double shift = row % 2 == 0 ? 0 : 0.25;
             const double x = kSpacing * (column - 0.5 * (columns - 1)) + shift;
-            scene.position.push_back({x, box.sides[1] * (row + 0.5), 0, 0});
+            scene.position.push_back({x, 0.5 * (row + 0.5), 0, 0});
+            scene.kind.push_back(0);
+        }
+    return scene;
+}
+
+PeerScene board_stacks(int dimension, int count) {
+    constexpr int kInStack = 10;
+    PeerScene scene = empty_scene("board_stacks", dimension);
+    scene.kinds.push_back(box_kind(dimension, {2, 0.1, 0.5, 0.5}));
+    scene.half_width = std::max(1.0, 0.5 * count / kInStack);
+    for (int i = 0; i < count; ++i) {
+        scene.position.push_back({0, 0.1 * (i % kInStack) + 0.05, 1.0 * (i / kInStack), 0});
+        scene.kind.push_back(0);
+    }
+    return scene;
+}
+
+PeerScene box_pyramid(int dimension, int count) {
+    constexpr double kSpacing = 1.05;
+    PeerScene scene = empty_scene("box_pyramid", dimension);
+    scene.kinds.push_back(box_kind(dimension, Vec4::Ones()));
+    int rows = 1;
+    while ((rows + 1) * (rows + 2) / 2 <= count) ++rows;
+    scene.half_width = 0.5 * kSpacing * rows;
+    for (int row = 0; row < rows; ++row)
+        for (int i = 0; i < rows - row; ++i) {
+            scene.position.push_back({kSpacing * (i - 0.5 * (rows - row - 1)), row + 0.5, 0, 0});
             scene.kind.push_back(0);
         }
     return scene;

@@ -48,6 +48,13 @@ PeerScene sphere_pile(int dimension, int count);
 /// quarter of a box: every box stands on two. Boxes of a row are 5 cm apart.
 PeerScene box_wall(int dimension, int count);
 
+/// Stacks of ten boards of 2 by 0.1 by 0.5 (by 0.5) m each, 1 m apart in z.
+PeerScene board_stacks(int dimension, int count);
+
+/// Cubes of 1 m, each on the middle between two that are 5 cm apart: n rows of n to 1, at most
+/// `count` in all.
+PeerScene box_pyramid(int dimension, int count);
+
 /// Deepest overlap of two spheres or of a sphere and a wall, from positions alone [m], >= 0.
 double deepest_sphere_overlap(const PeerScene& scene, const std::vector<Vec4>& position);
 
