@@ -73,9 +73,14 @@ constexpr std::size_t kBlowWork = 10000;
 constexpr double kLargeBlowResidual = 1e-3;
 
 /// Part of what a pair of sweeps changed in a large island that the next one begins with, beyond
-/// it, usual 0.95: a slow error shrinks as in 1/(1 - 0.95) sweeps. More, and what the last sweeps
-/// leave grows; less, and a wall of 20 rows sways (0: by 13 mm/s instead of 0.3).
-constexpr double kMomentum = 0.95;
+/// it, usual 0.9: a slow error shrinks in a tenth of the sweeps. More, and what the last sweeps
+/// leave grows; less, and a wall of 20 rows sways (0: by 13 mm/s instead of 1).
+constexpr double kMomentum = 0.9;
+
+/// Friction coefficient up to which there is momentum, usual 1. More, and friction may do more to
+/// an approach than the normal impulse that it goes with: sweeps then need not come nearer to any
+/// solution, and momentum drives them away (by 100 m/s for a box of friction 100 on a plane).
+constexpr double kMostMomentumFriction = 1;
 
 /// Contacts from which on an island is coloured and solved in float, eight at a time. Fewer are
 /// solved in double, one by one, in the order of their bodies, which suits towers listed from the

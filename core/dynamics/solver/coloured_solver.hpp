@@ -133,7 +133,8 @@ double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& e
                         const Threads& threads, LaneCount lanes) {
     const ColouredStage& stage = island.stage();
     // Of loads alone: in a blow contacts open and close.
-    const bool is_load = stage.cause == Cause::kLoad && pass == Pass::kSolve;
+    const bool is_load =
+        stage.cause == Cause::kLoad && pass == Pass::kSolve && bears_momentum(stage.simulation);
     std::optional<Momentum<Threads>> momentum;
     return iterate(pass, effort, [&](Sweep sweep) {
         if (is_load && sweep.backward) {

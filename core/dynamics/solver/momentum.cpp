@@ -1,5 +1,6 @@
 #include "core/dynamics/solver/momentum.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace tesserae {
@@ -70,6 +71,12 @@ double turned_back(std::span<const float> first, std::span<const float> now,
 }
 
 }  // namespace
+
+bool bears_momentum(const Simulation& simulation) {
+    return std::all_of(
+        simulation.types.begin(), simulation.types.end(),
+        [](const TypeProperties& type) { return type.friction <= kMostMomentumFriction; });
+}
 
 void begin_momentum(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;

@@ -11,6 +11,10 @@ namespace tesserae {
 // Where a pair turns back from where it began, the momentum is given up for once (O'Donoghue and
 // Candes 2015).
 
+/// Whether friction is nowhere so strong that what a sweep changes may grow: see
+/// kMostMomentumFriction.
+bool bears_momentum(const Simulation& simulation);
+
 /// What the first pair of sweeps goes on from.
 void begin_momentum(const ColouredStage& stage, Range bodies);
 void begin_round_momentum(const ColouredStage& stage, BatchRange batches);

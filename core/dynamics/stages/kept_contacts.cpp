@@ -73,8 +73,8 @@ bool is_normal_of_face(const Shape& shape, const Vec4& direction) {
 class KeptContacts {
   public:
     KeptContacts(const Simulation& simulation, const StepData& step, KeptManifolds& kept,
-                 std::vector<Contact>& list)
-        : simulation_(simulation), step_(step), kept_(kept), list_(list) {}
+                 std::vector<Contact>& list, std::vector<Contact>& found)
+        : simulation_(simulation), step_(step), kept_(kept), list_(list), found_(found) {}
 
     /// Whether both are flat and whatever comes within the margin is within that of what is kept.
     bool may_keep(const BodyPair& pair, double margin) const {
@@ -128,14 +128,13 @@ class KeptContacts {
         m.count = 0;
         m.keeps = Keeps::kNothing;
         if (found_.empty()) return;
-        const Mat4 to_b = to_matrix(m.rotor).transpose();
         const Vec4& normal = found_[0].normal;
-        const Vec4 of_b = to_b * normal;
-        m.keeps = is_normal_of_face(shape_a, normal)  ? Keeps::kNormalOfA
-                  : is_normal_of_face(shape_b, -of_b) ? Keeps::kNormalOfB
-                                                      : Keeps::kNoFace;
+        const Vec4 into_b = -(to_matrix(m.rotor).transpose() * normal);
+        m.keeps = is_normal_of_face(shape_a, normal)   ? Keeps::kNormalOfA
+                  : is_normal_of_face(shape_b, into_b) ? Keeps::kNormalOfB
+                                                       : Keeps::kNoFace;
         if (m.keeps == Keeps::kNoFace) return;
-        m.normal = m.keeps == Keeps::kNormalOfA ? normal : of_b;
+        m.normal = normal;
         m.count = static_cast<std::uint32_t>(found_.size());
         for (const Contact& c : found_) {
             const Vec4 on_a = c.point - 0.5 * c.separation * normal;
@@ -145,16 +144,13 @@ class KeptContacts {
 
     void report(const KeptManifold& m, const Mat4& from_a, const Relative& now, double margin) {
         // Where b was, to where it is.
-        const Mat4 turned_b = to_matrix(now.rotor),
-                   turn = turned_b * to_matrix(m.rotor).transpose();
-        const bool of_a = m.keeps == Keeps::kNormalOfA;
-        const Vec4 first_normal = of_a ? m.normal : Vec4(to_matrix(m.rotor) * m.normal);
-        const Vec4 normal = of_a ? m.normal : Vec4(turned_b * m.normal);
+        const Mat4 turn = to_matrix(now.rotor) * to_matrix(m.rotor).transpose();
+        const Vec4 normal = m.keeps == Keeps::kNormalOfA ? m.normal : Vec4(turn * m.normal);
         const Vec4 in_world = from_a * normal;
         for (std::uint32_t i = m.first; i < m.first + m.count; ++i) {
             const KeptPoint& p = kept_.points[i];
             const Vec4 on_a(p.on_a.data());
-            const Vec4 first = on_a + p.separation * first_normal;
+            const Vec4 first = on_a + p.separation * m.normal;
             const Vec4 on_b = now.offset + turn * (first - m.offset);
             const double separation = normal.dot(on_b - on_a);
             if (separation <= margin)
@@ -167,7 +163,7 @@ class KeptContacts {
     const StepData& step_;
     KeptManifolds& kept_;
     std::vector<Contact>& list_;
-    std::vector<Contact> found_;
+    std::vector<Contact>& found_;  ///< of one pair
 };
 
 }  // namespace
@@ -182,7 +178,9 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
                         std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
     Search search(last, step.pairs[pairs.begin]);
-    KeptContacts contacts(simulation, step, kept, list);
+    // A thread's own, from range to range: no step should have to ask for memory.
+    static thread_local std::vector<Contact> found;
+    KeptContacts contacts(simulation, step, kept, list, found);
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const BodyPair& pair = step.pairs[i];
         const double margin = margin_of(simulation, step, pair.a, pair.b);

@@ -28,7 +28,7 @@ struct KeptManifold {
     Rotor rotor;                 ///< b's frame to a's
     Keeps keeps = Keeps::kUnknown;
     std::uint32_t first = 0, count = 0;  ///< its points
-    Vec4 normal = Vec4::Zero();          ///< from a to b, in the frame of the body whose face it is
+    Vec4 normal = Vec4::Zero();          ///< from a to b where it was found, in a's frame
 };
 struct KeptPoint {
     std::array<double, 4> on_a;  ///< in a's frame [m]

@@ -16,7 +16,7 @@ struct Needs {
     bool restitution = true;     ///< rebounds: a body has restitution
     bool uneven_inertia = true;  ///< 6x6 inertia: some movable body's depends on the direction
     bool seams = true;           ///< faces that may lie in one plane: a bounded body has faces
-    bool manifolds = true;       ///< manifolds that are kept: two bodies have nothing but flat faces
+    bool manifolds = true;       ///< kept ones: two bodies have nothing but flat faces
     bool turning = true;         ///< rotors and angular velocities: some body turns, or contacts
                                  ///< can turn it
 };

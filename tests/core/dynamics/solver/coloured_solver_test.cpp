@@ -205,9 +205,16 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
             hits += std::count(coloured.hit.begin(), coloured.hit.end(), 1);
             const bool single = plain.contacts.size() == 1;
             // At one point friction and turning take turns until the same (measured: 2e-5).
-            const double most = !hit            ? 1e-5
+            // Momentum carries roundings on, and to another solution where there are several
+            // (measured: 3e-3 m/s): both have ended, which the residual tells.
+            const bool carried = !single && friction > 0 && friction <= kMostMomentumFriction;
+            const double most = !hit            ? (carried ? 5e-3 : 3e-5)
                                 : friction == 0 ? (single ? 1e-5 : 4e-3)
                                                 : (single ? 1e-4 : 0.1);
+            // Friction of 100 keeps some from ending, however they are solved.
+            if (!hit) {
+                EXPECT_LT(coloured.residual[0], std::max(3e-5, 3 * plain.residual[0]));
+            }
             EXPECT_LT(difference(plain, coloured), most)
                 << "pair of shapes " << bodies.types[0].shape.index() << " and "
                 << bodies.types[1].shape.index() << ", round " << round;
@@ -247,7 +254,8 @@ TEST(ColouredSolver, ConvergesToTheVelocitiesOfTheOneByOneSolver) {
     // they were 4e-10 to 1.2e-8 m/s an iteration apart, at 4000 and at 16000 iterations.
     EXPECT_LT(left(plain), 1e-12);
     EXPECT_LT(left(coloured), 1e-6);
-    EXPECT_LT(difference(plain, coloured), 3e-8 * settings.iterations);
+    // Momentum carries each on.
+    EXPECT_LT(difference(plain, coloured), 3e-8 / (1 - kMomentum) * settings.iterations);
     const StepData early = solved(crowd(0, false), settings_of(Solver::kImpulse, 5), kStep, 1);
     EXPECT_GT(difference(plain, early), 1e-3);
 }
