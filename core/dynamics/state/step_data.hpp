@@ -163,9 +163,9 @@ struct StepData {
     /// Of `impulses`, `pushing` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, pushing_angular, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
-    std::vector<double> residual;   ///< of every island [m/s]
-    std::vector<BodyId> asleep;     ///< as in StepMemory, as of now
-    std::vector<ContactSums> sums;  ///< of every piece of kReportPiece contacts
+    std::vector<double> residual;                ///< of every island [m/s]
+    std::vector<BodyId> asleep;                  ///< as in StepMemory, as of now
+    std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
     std::vector<ContactImpulse> merged_impulses;

@@ -41,8 +41,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.slop = kSlop * least_half_size;
     p.arm = least_half_size < p.radius ? p.radius : 0;
 
-    p.flat =
-        std::visit([]<class S>(const S&) { return S::kBounded && IsPolytope<S>; }, type.shape);
+    p.flat = std::visit([]<class S>(const S&) { return S::kBounded && IsPolytope<S>; }, type.shape);
     p.movable = is_movable(type);
     p.falls = !type.fixed_position;
     if (!type.fixed_position) p.inverse_mass = 1 / type.mass;
