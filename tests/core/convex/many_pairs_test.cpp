@@ -95,8 +95,9 @@ struct ManyErrors {
     }
     /// The overlap is one along its normal, as the gap shows: an error is what it is more than the
     /// least. A solver's may be more: Qhull's planes lean where they are merged.
-    void note_depth(const ConvexSeparation& s, long double least, double size) {
-        ConvexErrors::note(depth, std::max(0.0L, -s.distance - least) / size);
+    static void note_depth(double& worst, const ConvexSeparation& s, long double least,
+                           double size) {
+        ConvexErrors::note(worst, std::max(0.0L, -s.distance - least) / size);
     }
 };
 
@@ -146,6 +147,7 @@ struct HullPairs {
     int qhull_every;  ///< of these
 };
 
+/// Of two 24-cells' 576 differences it takes 57 ms, an hour and a half for 10^5 pairs.
 long double depth_by_qhull(const PointSet& a, const PointSet& b) {
     std::vector<Vec4> difference;
     for (const Vec4& p : a.points)
@@ -189,10 +191,10 @@ ManyErrors measure_hulls(const std::vector<Polychoron>& hulls, const HullPairs& 
             ConvexErrors::note(errors.distance, std::abs(s.distance - v.norm()) / scale);
             continue;
         }
-        errors.note_depth(s, depth_of(a, b), scale);
+        ManyErrors::note_depth(errors.depth, s, depth_of(a, b), scale);
         if (!degenerate && i / 2 % set.qhull_every == 0)
-            ConvexErrors::note(errors.depth_by_qhull,
-                               std::abs(s.distance + depth_by_qhull(a.corners, b.corners)) / scale);
+            ManyErrors::note_depth(errors.depth_by_qhull, s, depth_by_qhull(a.corners, b.corners),
+                                   scale);
     }
     return errors;
 }
@@ -233,8 +235,8 @@ TEST(ConvexManyPairsSlow, Of24CellsAreExact) {
                  "24-cells");
 }
 
-/// Their differences have up to 17,000 points, of which Qhull's hull is beyond hull_of's bounds: distances
-/// alone.
+/// Their differences have up to 17,000 points, of which Qhull's hull is beyond hull_of's bounds:
+/// distances alone.
 TEST(ConvexManyPairsSlow, OfManyVerticesAreExact) {
     RandomGeometry random(34);
     std::vector<Polychoron> hulls = random_hulls(random, 40, 130, 10);
@@ -309,7 +311,7 @@ TEST(ConvexManyPairsSlow, OfBoxesAreExact) {
         if (::testing::Test::HasFatalFailure()) break;
         if (s.distance >= 0) continue;
         ++errors.solved;
-        errors.note_depth(s, depth_of(a, b), scale);
+        ManyErrors::note_depth(errors.depth, s, depth_of(a, b), scale);
     }
     expect_exact(errors, "boxes");
 }
@@ -357,7 +359,7 @@ void expect_round(const char* set, const Draw& draw, const Separate& separate) {
         if (::testing::Test::HasFatalFailure()) break;
         if (s.distance >= 0) continue;
         ++errors.solved;
-        errors.note_depth(s, depth_by_trial(random, a, b, s.normal), scale);
+        ManyErrors::note_depth(errors.depth, s, depth_by_trial(random, a, b, s.normal), scale);
     }
     errors.print(set);
     EXPECT_LT(errors.gap, kRoundAccuracy);
