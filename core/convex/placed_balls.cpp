@@ -133,6 +133,10 @@ class GreatestGap {
         // The last step's change of the normal, whose square is the distance's error, and how far
         // the points are from having the distance between them.
         constexpr double kTurned = 1e-9, kOff = 1e-12;
+        // Where two bodies' groups are orthogonal to the normal but for as little, the distance's
+        // error is the change itself: some steps more, while there is one.
+        constexpr double kStill = 1e-13;
+        constexpr int kMoreSteps = 4;
         normal_ = start;
         of_a_.point.setZero();
         of_b_.point.setZero();
@@ -143,7 +147,14 @@ class GreatestGap {
             const double turned = take_step(mu);
             if (!(turned >= 0)) return false;
             last_ = std::max(turned, off_);
-            if (mu <= kLeastMu && turned < kTurned && off_ < kOff) return true;
+            if (mu <= kLeastMu && turned < kTurned && off_ < kOff) {
+                for (int more = 0; more < kMoreSteps && last_ > kStill; ++more) {
+                    const double again = take_step(mu);
+                    if (!(again >= 0)) return false;
+                    last_ = std::max(again, off_);
+                }
+                return true;
+            }
             // After a long step groups may be others.
             if (turned > 0.1 && step > 2) mu = std::max(mu, 0.01 * turned);
             if (turned < kLongestStep) mu = std::max(kLeastMu, kFall * mu);
