@@ -199,10 +199,17 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
                 const Shape& shape = scene.bodies.types[b].shape;
                 const auto f = [&](Real t) { return oracle_distance(shape, o + t * d); };
                 Real low = 0, high = is_bounded(shape) ? 30 : 200;
+                constexpr Real golden = 0.6180339887498948482L;
+                Real u = high - golden * (high - low), v = low + golden * (high - low);
+                Real at_u = f(u), at_v = f(v);
                 for (int k = 0; k < 70; ++k) {
-                    const Real u = low + 0.382L * (high - low), v = low + 0.618L * (high - low);
-                    const bool left = f(u) < f(v);
-                    (left ? high : low) = left ? v : u;
+                    if (at_u < at_v) {
+                        high = v, v = u, at_v = at_u;
+                        u = high - golden * (high - low), at_u = f(u);
+                    } else {
+                        low = u, u = v, at_u = at_v;
+                        v = low + golden * (high - low), at_v = f(v);
+                    }
                 }
                 if (std::abs(f(low)) < 1e-3L) edge = true;
                 if (f(low) > 0) continue;

@@ -94,24 +94,38 @@ inline Wide cross(const Wide& a, const Wide& b, const Wide& c) {
     return n;
 }
 
-/// The largest gap over all facet normals of the Minkowski difference: every three of the eight
-/// generators. Minus the least overlap where the boxes overlap.
-inline Real largest_facet_gap(const Two& two) {
-    std::vector<Wide> all;
+/// A facet of the Minkowski difference and the one across: their unit normal, and how far from the
+/// centre they are.
+struct Facets {
+    Wide normal;
+    Real width;
+};
+/// Of every three of the eight generators, wherever the boxes are.
+inline std::vector<Facets> facets_of(const Two& two) {
+    std::vector<Wide> all, unit;
     for (const PlacedBox* p : {&two.a, &two.b})
-        for (const Wide& g : generators(*p)) all.push_back(g.normalized());
-    Real best = -INFINITY;
+        for (const Wide& g : generators(*p)) all.push_back(g), unit.push_back(g.normalized());
+    std::vector<Facets> facets;
     for (int i = 0; i < 8; ++i)
         for (int j = i + 1; j < 8; ++j)
             for (int k = j + 1; k < 8; ++k) {
-                const Wide second = rest_of(all[j], {all[i]});
-                const Wide third = rest_of(all[k], {all[i], second});
+                const Wide second = rest_of(unit[j], {unit[i]});
+                const Wide third = rest_of(unit[k], {unit[i], second});
                 if (second.isZero() || third.isZero()) continue;
-                const Wide unit = cross(all[i], second, third);
-                best = std::max({best, gap_along(two, unit), gap_along(two, -unit)});
+                Facets& both = facets.emplace_back(Facets{cross(unit[i], second, third), 0});
+                for (const Wide& g : all) both.width += std::abs(both.normal.dot(g));
             }
+    return facets;
+}
+inline Real largest_gap(const std::vector<Facets>& facets, const Wide& offset) {
+    Real best = -INFINITY;
+    for (const auto& [normal, width] : facets)
+        best = std::max(best, std::abs(normal.dot(offset)) - width);
     return best;
 }
+/// The largest gap over all facet normals of the Minkowski difference. Minus the least overlap
+/// where the boxes overlap.
+inline Real largest_facet_gap(const Two& two) { return largest_gap(facets_of(two), offset(two)); }
 
 /// The distance by brute force: on every pair of faces with k + l <= 3 the least-squares point of
 /// their affine spans, kept if it lies in both. (The least of any feasible points that include the
@@ -162,11 +176,12 @@ inline void slide_to(Two& two, double gap) {
     Wide direction = offset(two);
     if (direction.norm() == 0) direction = Wide::Unit(0);
     direction.normalize();
+    const std::vector<Facets> facets = facets_of(two);
     Real low = 0, high = 3 * two.reach();
     for (int i = 0; i < 60; ++i) {
         const Real middle = 0.5L * (low + high);
         two.b.position = two.a.position + (middle * direction).cast<double>();
-        (largest_facet_gap(two) < gap ? low : high) = middle;
+        (largest_gap(facets, offset(two)) < gap ? low : high) = middle;
     }
 }
 

@@ -42,46 +42,63 @@ struct Zonotope {
 };
 
 /// The least |r + sum t_k g_k| with |t_k| <= 1. The optimum lies inside a face: some t_k are -1 or
-/// +1, the others solve a least-squares problem (Gram-Schmidt). All faces are tried; whatever t
-/// rounding makes of a badly conditioned one is clamped and so still a point of the set.
+/// +1, the others solve a least-squares problem (Gram-Schmidt). All faces are tried, parallel ones
+/// after each other; whatever t rounding makes of a badly conditioned one is clamped and so still a
+/// point of the set.
 class LeastNorm {
   public:
     LeastNorm(const LVec& r, const std::vector<LVec>& generators) : generators_(generators) {
-        search(0, r);
+        choose(0, r);
     }
     long double norm() const { return best_.norm(); }
 
   private:
-    void search(std::size_t k, const LVec& r) {
-        if (k == generators_.size()) return solve(r);
-        search(k + 1, r - generators_[k]);
-        search(k + 1, r + generators_[k]);
-        free_.push_back(k);
-        if (free_.size() <= 4) search(k + 1, r);
-        free_.pop_back();
+    /// Which of the generators from k on are free.
+    void choose(std::size_t k, const LVec& r) {
+        if (k == generators_.size()) return search(0, r);
+        fixed_.push_back(k);
+        choose(k + 1, r);
+        fixed_.pop_back();
+        if (!add_free(k)) return;
+        choose(k + 1, r);
+        --free_count_;
+    }
+    /// @return whether it is independent of those that are free
+    bool add_free(std::size_t k) {
+        if (free_count_ == 4) return false;
+        const std::size_t n = free_count_;
+        const LVec& g = generators_[k];
+        q_[n] = g;
+        for (std::size_t i = 0; i < n; ++i) {
+            upper_[i][n] = q_[i].dot(q_[n]);
+            q_[n] -= upper_[i][n] * q_[i];
+        }
+        upper_[n][n] = q_[n].norm();
+        if (upper_[n][n] <= 1e-18L * g.norm()) return false;
+        q_[n] /= upper_[n][n];
+        free_[free_count_++] = k;
+        return true;
+    }
+    /// The ends of the fixed ones from the i-th on.
+    void search(std::size_t i, const LVec& r) {
+        if (i == fixed_.size()) return solve(r);
+        search(i + 1, r - generators_[fixed_[i]]);
+        search(i + 1, r + generators_[fixed_[i]]);
     }
     void solve(const LVec& r) {
-        LVec q[4];
-        long double upper[4][4], t[4];
+        long double t[4];
         LVec rest = r;
-        const std::size_t n = free_.size();
+        const std::size_t n = free_count_;
         for (std::size_t k = 0; k < n; ++k) {
-            const LVec& g = generators_[free_[k]];
-            q[k] = g;
-            for (std::size_t i = 0; i < k; ++i) {
-                upper[i][k] = q[i].dot(q[k]);
-                q[k] -= upper[i][k] * q[i];
-            }
-            upper[k][k] = q[k].norm();
-            if (upper[k][k] <= 1e-18L * g.norm()) return;
-            q[k] /= upper[k][k];
-            t[k] = -q[k].dot(rest);
-            rest += t[k] * q[k];
+            t[k] = -q_[k].dot(rest);
+            rest += t[k] * q_[k];
         }
+        // No point of the face's space is nearer.
+        if (!first_ && rest.squaredNorm() > best_.squaredNorm()) return;
         LVec point = r;
         for (std::size_t k = n; k-- > 0;) {
-            for (std::size_t j = k + 1; j < n; ++j) t[k] -= upper[k][j] * t[j];
-            t[k] /= upper[k][k];
+            for (std::size_t j = k + 1; j < n; ++j) t[k] -= upper_[k][j] * t[j];
+            t[k] /= upper_[k][k];
         }
         for (std::size_t k = 0; k < n; ++k)
             point += std::clamp(t[k], -1.0L, 1.0L) * generators_[free_[k]];
@@ -90,7 +107,10 @@ class LeastNorm {
     }
 
     const std::vector<LVec>& generators_;
-    std::vector<std::size_t> free_;
+    std::vector<std::size_t> fixed_;
+    std::size_t free_[4], free_count_ = 0;
+    LVec q_[4];
+    long double upper_[4][4];
     LVec best_;
     bool first_ = true;
 };

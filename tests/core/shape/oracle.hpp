@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,54 +51,33 @@ auto bounded_of(const std::variant<S...>&) {
 using BoundedShapes = decltype(bounded_of(Shape{}));
 
 /// The point of a hull nearest to the origin, by Wolfe's method (1976) in long double.
-inline LVec nearest_of_hull(const std::vector<LVec>& points) {
-    using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-    using Numbers = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-    const auto least = [&](const LVec& x) {
-        return std::min_element(points.begin(), points.end(),
-                                [&](const LVec& a, const LVec& b) { return a.dot(x) < b.dot(x); });
-    };
-    long double scale = 0;
-    for (const LVec& p : points) scale = std::max(scale, p.norm());
-    std::vector<LVec> face = {*least(points[0])};
-    std::vector<long double> weight = {1};
-    LVec x = face[0];
-    for (int step = 0; step < 1000; ++step) {
-        const LVec next = *least(x);
-        if (x.dot(x - next) <= 1e-18L * scale * x.norm()) break;
-        if (std::find(face.begin(), face.end(), next) != face.end()) break;
-        face.push_back(next), weight.push_back(0);
-        for (;;) {
-            // The point of the face's space nearest to the origin.
-            const auto edges = static_cast<Eigen::Index>(face.size() - 1);
-            std::vector<long double> wanted(face.size(), 1);
-            if (edges > 0) {
-                Matrix E(4, edges);
-                for (Eigen::Index i = 0; i < edges; ++i)
-                    E.col(i) = face[static_cast<std::size_t>(i) + 1] - face[0];
-                const Numbers t = E.colPivHouseholderQr().solve(Numbers(-face[0]));
-                for (Eigen::Index i = 0; i < edges; ++i) {
-                    wanted[static_cast<std::size_t>(i) + 1] = t[i];
-                    wanted[0] -= t[i];
-                }
-            }
-            long double part = 1;
-            for (std::size_t i = 0; i < face.size(); ++i)
-                if (wanted[i] <= 0) part = std::min(part, weight[i] / (weight[i] - wanted[i]));
-            for (std::size_t i = 0; i < face.size(); ++i)
-                weight[i] += part * (wanted[i] - weight[i]);
-            const bool is_inside = part == 1;
-            for (std::size_t i = face.size(); i-- > 0;)
-                if (weight[i] <= 1e-19L && face.size() > 1) {
-                    face.erase(face.begin() + static_cast<std::ptrdiff_t>(i));
-                    weight.erase(weight.begin() + static_cast<std::ptrdiff_t>(i));
-                }
-            if (is_inside) break;
+LVec nearest_of_hull(const std::vector<LVec>& points);
+
+struct LeastOfConvex {
+    long double at, value;
+};
+/// The least of a convex function from `low` to `high`, by so many golden sections.
+template <class Function>
+LeastOfConvex least_of_convex(long double low, long double high, int sections,
+                              const Function& function) {
+    const long double golden = 0.6180339887498948482L;
+    long double a = high - golden * (high - low), b = low + golden * (high - low);
+    long double at_a = function(a), at_b = function(b);
+    const long double at_low = function(low), at_high = function(high);
+    LeastOfConvex least =
+        at_low < at_high ? LeastOfConvex{low, at_low} : LeastOfConvex{high, at_high};
+    for (int i = 0; i < sections; ++i) {
+        if (at_a < least.value) least = {a, at_a};
+        if (at_b < least.value) least = {b, at_b};
+        if (at_a < at_b) {
+            high = b, b = a, at_b = at_a;
+            a = high - golden * (high - low), at_a = function(a);
+        } else {
+            low = a, a = b, at_a = at_b;
+            b = low + golden * (high - low), at_b = function(b);
         }
-        x.setZero();
-        for (std::size_t i = 0; i < face.size(); ++i) x += weight[i] * face[i];
     }
-    return x;
+    return least;
 }
 
 /// FORMULAS 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho. Its
@@ -193,9 +171,9 @@ struct Oracle {
             for (const LVec& q : points) seen.push_back((q - p) / size);
             return std::max(deepest, nearest_of_hull(seen).norm() * size);
         }
-        std::vector<long double> t(generators.size(), 0);
+        std::array<long double, 4> t = {};
         for (int sweep = 0; sweep < 3; ++sweep)
-            for (std::size_t k = 0; k < t.size(); ++k) {
+            for (std::size_t k = 0; k < generators.size(); ++k) {
                 const LVec& g = generators[k];
                 const long double square = g.squaredNorm();
                 if (square == 0) continue;

@@ -14,17 +14,11 @@ struct Line {
     LVec at(long double t) const { return origin + t * direction; }
 };
 
-/// Where a ray comes nearest to a convex shape: the distance along it is convex, so thirds decide.
+/// Where a ray comes nearest to a convex shape: the distance along it is convex, so golden sections
+/// decide.
 long double nearest_parameter(const Oracle& oracle, const Line& ray, long double end) {
-    long double low = 0, high = end;
-    for (int i = 0; i < 130; ++i) {
-        const long double a = low + (high - low) / 3, b = high - (high - low) / 3;
-        if (oracle.signed_distance(ray.at(a)) > oracle.signed_distance(ray.at(b)))
-            low = a;
-        else
-            high = b;
-    }
-    return (low + high) / 2;
+    const auto distance = [&](long double t) { return oracle.signed_distance(ray.at(t)); };
+    return least_of_convex(0, end, 110, distance).at;
 }
 
 /// Rays from `far` sizes away, aimed around the shape; some parallel to axes, some inside.
@@ -135,6 +129,7 @@ TYPED_TEST(ShapeRay, AgreesWithSphereTracing) {
     for_rays<TypeParam>(433, [&](const auto& shape, const Oracle& oracle, const Vec4& o,
                                  const Vec4& d, double error) {
         const double t = ray_hit(shape, o, d);
+        if (t == kMiss) return;
         const Line ray = {o.cast<long double>(), d.cast<long double>()};
         long double traced = 0, distance = 0;
         for (int step = 0; step < kShare<TypeParam> * 2000; ++step) {
@@ -143,7 +138,7 @@ TYPED_TEST(ShapeRay, AgreesWithSphereTracing) {
             traced += distance;
             if (traced > ray.origin.norm() + 2 * oracle.size) break;
         }
-        if (t == kMiss || distance >= 1e-17L * oracle.size) return;
+        if (distance >= 1e-17L * oracle.size) return;
         // Along the ray an error of the surface counts by the secant of the angle of incidence.
         const Vec4 n = normal(shape, ray.at(traced).template cast<double>());
         const double cosine = std::abs(n.dot(d));

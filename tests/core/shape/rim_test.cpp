@@ -18,21 +18,7 @@ long double least_ratio(const Oracle& oracle, const Vec4& origin, const Vec4& di
     const auto ratio = [&](long double s) {
         return s > 0 ? s * oracle.signed_distance(o + d / s) : 1;
     };
-    const long double golden = 0.6180339887498948482L;
-    long double low = first, high = std::max(first, 2 / start);
-    long double a = high - golden * (high - low), b = low + golden * (high - low);
-    long double at_a = ratio(a), at_b = ratio(b), least = std::min(ratio(low), ratio(high));
-    for (int i = 0; i < 100; ++i) {
-        least = std::min({least, at_a, at_b});
-        if (at_a < at_b) {
-            high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low), at_a = ratio(a);
-        } else {
-            low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low), at_b = ratio(b);
-        }
-    }
-    return least;
+    return least_of_convex(first, std::max(first, 2 / start), 100, ratio).value;
 }
 
 /// A unit direction from `origin` past or through the shape: at any of its points, or past its
