@@ -8,12 +8,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <functional>
 #include <map>
 
 #include "core/error.hpp"
+#include "tests/content.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
@@ -178,21 +180,22 @@ TEST(TrajectoryKill, AtEveryWriteOfAnInterruptedRunTheFileHoldsTheLastFlush) {
     });
 }
 
-/// A copy of the folder is continued from what is furthest in it.
-void expect_continued_for_longer(const fs::path& path, std::uint64_t rows) {
+/// A copy of the folder is continued from what is furthest in it, of so many rows, up to `end`.
+void expect_continued_for_longer(const fs::path& path, std::uint64_t rows, std::uint64_t end) {
     const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path copy = folder / "copy.h5";
     fs::copy_file(path, copy);
     if (fs::exists(path.string() + ".partial"))
         fs::copy_file(path.string() + ".partial", copy.string() + ".partial");
-    TrajectoryWriter writer(copy, killed_header(kKilledRows), make_steps(kKilledRows), false);
+    TrajectoryWriter writer(copy, killed_header(end), make_steps(end), false);
     ASSERT_GE(writer.rows(), rows) << writer.note();
-    append_rows(writer, kKilledRows, kKilledBodies);
+    append_rows(writer, end, kKilledBodies);
     writer.finish();
-    expect_whole(copy, kKilledRows);
+    expect_whole(copy, end);
 }
 
-TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
+/// @param continue_every   of so many states one is continued
+void expect_whole_while_continued(int continue_every) {
     const tesserae::testing::TemporaryFolder folder("kill");
     const fs::path path = folder / "film.h5";
     // Each time what is there is continued, in a copy; rows 65 and 122 split a node.
@@ -205,6 +208,8 @@ TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
     SharedCount finished;
     finished.set(ends[0]);
     int states = 0;
+    std::uint64_t whole_rows = 0;
+    std::string whole_bytes;
     const auto work = [&] {
         for (std::uint64_t end : ends) {
             if (end == ends[0]) continue;
@@ -218,8 +223,21 @@ TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
         if (::testing::Test::HasFailure()) return;
         ++states;
         try {
-            expect_whole(path, finished.get());
-            if (states % 4 == 0) expect_continued_for_longer(path, finished.get());
+            // The same bytes need no second look.
+            std::string bytes = tesserae::testing::content(path);
+            if (whole_rows != finished.get() || bytes != whole_bytes) {
+                expect_whole(path, finished.get());
+                whole_rows = finished.get(), whole_bytes = std::move(bytes);
+            }
+            if (states % continue_every == 0) {
+                // By the same command or, by turns, by one that wants more.
+                const std::uint64_t* const end =
+                    std::upper_bound(std::begin(ends), std::end(ends), finished.get());
+                const std::uint64_t same = end == std::end(ends) ? kKilledRows : *end;
+                const std::uint64_t more = states / continue_every % 2 == 0 ? 0 : 7;
+                expect_continued_for_longer(path, finished.get(),
+                                            std::min(same + more, kKilledRows));
+            }
         } catch (const std::exception& error) {
             ADD_FAILURE() << error.what();
         }
@@ -231,6 +249,12 @@ TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
     EXPECT_GE(states, 300);
     expect_whole(path, kKilledRows);
 }
+
+TEST(TrajectoryKill, AtEveryWriteOfAContinuedFileTheFinishedOneIsWhole) {
+    expect_whole_while_continued(7);
+}
+
+TEST(TrajectoryKillSlow, EveryStateOfAContinuedFileIsContinued) { expect_whole_while_continued(1); }
 
 TEST(TrajectoryKill, AtEveryWriteOfAFileWithoutItsNameTheFileHoldsTheLastFlush) {
     // Killed just before the rename, then wanted longer: nothing else holds its rows.
