@@ -363,9 +363,9 @@ TEST(Sections, AreEmptyWhereTheSliceMissesTheBody) {
     for (const auto& list :
          {std::vector<std::string>(std::begin(kRound), std::end(kRound)),
           std::vector<std::string>(std::begin(kPolytopes), std::end(kPolytopes))})
-        for (const std::string& keys : list)
+        for (const std::string& keys : list) {
+            Bodies bodies = body_of(keys);
             for (int i = 0; i < 50; ++i) {
-                Bodies bodies = body_of(keys);
                 bodies.rotor[0] = random_rotor(rng);
                 const Vec4 axis = to_matrix(bodies.rotor[0]).transpose() * Vec4::UnitW();
                 const double half =
@@ -379,6 +379,7 @@ TEST(Sections, AreEmptyWhereTheSliceMissesTheBody) {
                 bodies.position[0][3] = -half + 1e-2;
                 EXPECT_FALSE(sections.of(bodies, 0, frame).is_empty()) << keys;
             }
+        }
 }
 
 TEST(Sections, OfPlanesFaceTheFreeSideAndEndInTheCube) {

@@ -37,10 +37,13 @@ TEST(Interrupt, SignalsGiveTheirStatusAndTheSameCommandFinishes) {
         if (outcome.status == 0 || outcome.status == 1000 + signal) continue;
         EXPECT_EQ(outcome.status, 128 + signal) << outcome.err;
         ++stopped;
-        for (const std::string& file : files_below(folder / "out")) {
-            if (!file.ends_with(".exr")) continue;
-            EXPECT_EQ(tesserae({"info", folder.file("out/" + file)}).status, 0) << file;
-        }
+        // Every frame that has its name can be read.
+        std::vector<std::string> words = {"hash"};
+        for (const std::string& file : files_below(folder / "out"))
+            if (file.ends_with(".exr")) words.push_back(folder.file("out/" + file));
+        if (words.size() == 1) continue;
+        const Outcome hash = tesserae(words);
+        EXPECT_EQ(hash.status, 0) << hash.err;
     }
     EXPECT_GE(stopped, 2);
     const Outcome last = tesserae(command("out"));
@@ -57,7 +60,7 @@ TEST(Interrupt, KillsLoseNothing) {
     ASSERT_EQ(tesserae(command("straight")).status, 0);
     std::mt19937 random(1);
     for (int i = 0; i < 10; ++i)
-        tesserae(command("out"), SIGKILL, std::uniform_int_distribution(5, 400)(random));
+        tesserae(command("out"), SIGKILL, std::uniform_int_distribution(5, 200)(random));
     const Outcome last = tesserae(command("out"));
     ASSERT_EQ(last.status, 0) << last.err;
     expect_same_results(folder, "straight", "out");

@@ -32,22 +32,28 @@ void expect_same_frame(const std::string& whole, const std::string& joined) {
 TEST(Parts, JoinToTheBytesOfASingleRun) {
     const Folder folder("parts");
     const auto scene = folder.write("still.toml", still_scene());
-    const std::vector<std::vector<std::string>> settings = {
-        {},
-        {"--set", "render.tile=8"},
-        {"--set", "render.tile=512"},
-        {"--crop", "5,3,50,41"},
-        {"--set", "render.noise_target=0.01", "--set", "render.max_samples=16"},
-        {"--integrator", "path", "--set",
-         "render.channels=[\"color\", \"cryptomatte\", \"light\"]"},
-        {"--size", "2000x20", "--samples", "1"}};
+    struct Setting {
+        std::vector<std::string> words;
+        std::vector<int> counts;  ///< of parts
+    };
+    // 12 tiles, or 48, 1, 9, 12, 12, 250: fewer than parts, as many, more.
+    const std::vector<Setting> settings = {
+        {{}, {1, 3, 17}},
+        {{"--set", "render.tile=8"}, {17}},
+        {{"--set", "render.tile=512"}, {1, 3}},
+        {{"--crop", "5,3,50,41"}, {3, 12}},
+        {{"--set", "render.noise_target=0.01", "--set", "render.max_samples=16"}, {3}},
+        {{"--integrator", "path", "--set",
+          "render.channels=[\"color\", \"cryptomatte\", \"light\"]"},
+         {5}},
+        {{"--size", "2000x20", "--samples", "1"}, {3}}};
     int number = 0;
-    for (const auto& every : settings) {
+    for (const auto& [every, counts] : settings) {
         const auto whole = folder.file("whole" + std::to_string(number));
         std::vector<std::string> words = {"render", scene, "-o", whole};
         words.insert(words.end(), every.begin(), every.end());
         ASSERT_EQ(tesserae(words).status, 0);
-        for (const int n : {1, 3, 17}) {
+        for (const int n : counts) {
             const auto out =
                 folder.file("parts" + std::to_string(number) + "-" + std::to_string(n));
             // In any order, by any number of threads.
