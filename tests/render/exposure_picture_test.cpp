@@ -273,13 +273,14 @@ TEST(NoiseTarget, PixelsGetSamplesWhereTheyAreNoisy) {
 }
 
 TEST(NoiseTarget, TheErrorIsWhatItAsksFor) {
+    constexpr double kTarget = 0.04;
     TestScene scene = everything();
-    scene.settings.noise_target = 0.02;
+    scene.settings.noise_target = kTarget;
     scene.settings.samples = 16;
-    scene.settings.max_samples = 4096;
+    scene.settings.max_samples = 1024;
     const Image image = picture_of(scene);
     scene.settings.noise_target = 0;
-    scene.settings.samples = 8192;
+    scene.settings.samples = 2048;
     const Image converged = picture_of(scene);
     double squares = 0;
     int count = 0, outside = 0;
@@ -288,10 +289,11 @@ TEST(NoiseTarget, TheErrorIsWhatItAsksFor) {
             // Grey light: all channels are the luminance.
             const double off = std::sqrt(image.at("G", x, y)) - std::sqrt(converged.at("G", x, y));
             squares += off * off, ++count;
-            outside += std::abs(off) > 4 * 0.02;
+            outside += std::abs(off) > 4 * kTarget;
         }
-    // The target is a bound of every pixel's standard error as if samples were independent.
-    EXPECT_LT(std::sqrt(squares / count), 0.02);
+    // The target is a bound of every pixel's standard error as if samples were independent. Many
+    // pixels need few samples, so that the mean is 0.34 of it; for twice the target it is 0.43.
+    EXPECT_LT(std::sqrt(squares / count), 0.4 * kTarget);
     EXPECT_LT(outside, count / 100);
 }
 

@@ -267,7 +267,7 @@ TEST(Shadows, TreeLosesNoBody) {
     // out cannot have a smaller one.
     Random random(38);
     int partly = 0, hidden = 0;
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 30; ++round) {
         TestScene scene;
         const int count = round < 10 ? round : 300;
         for (int i = 0; i < count; ++i)
@@ -296,8 +296,8 @@ TEST(Shadows, TreeLosesNoBody) {
             hidden += expected == 0;
         }
     }
-    EXPECT_GT(partly, 500);
-    EXPECT_GT(hidden, 500);
+    EXPECT_GT(partly, 250);
+    EXPECT_GT(hidden, 250);
 }
 
 TEST(Shadows, SharedSurfacesAreLit) {
