@@ -40,9 +40,17 @@ constexpr double kKeptMotion = 0.001;
 /// not touch take the places of those that do; less, and only slower bodies keep theirs.
 constexpr double kKeptMargin = 2;
 
-/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias
-/// -(f/h) min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 they sink.
+/// Part of an overlap that a sub-step of Solver::kImpulse removes among bodies that nothing holds
+/// (f in the bias -(f/h) min(0, s + a)), usual 0.2. Towards 1 they jump.
 constexpr double kBiasPart = 0.2;
+
+/// The part that a push removes; see is_pushed(). Towards 1 a wall of 20 rows topples while it is
+/// pushed, towards 0 bodies stay in each other for long.
+constexpr double kPushPart = 0.05;
+
+/// Sweeps of a push, at most. Fewer, and piles that start inside each other stay so for longer;
+/// more cost more while anything overlaps.
+constexpr int kPushSweeps = 4;
 
 /// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
 /// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.

@@ -90,6 +90,24 @@ template <class V>
 #endif
 }
 
+/// a * b + c with one rounding, on every CPU: the same bits everywhere, slowly where the CPU has no
+/// instruction for it.
+[[gnu::always_inline]] inline float fused(float a, float b, float c) {
+#ifdef __FMA__
+    return __builtin_fmaf(a, b, c);
+#else
+    return std::fma(a, b, c);
+#endif
+}
+[[gnu::always_inline]] inline Float8 fused(Float8 a, Float8 b, Float8 c) {
+#ifdef __FMA__
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    for (std::size_t i = 0; i < kLanes; ++i) c[i] = std::fma(a[i], b[i], c[i]);
+    return c;
+#endif
+}
+
 // ---- from lanes to one number ----
 [[gnu::always_inline]] inline float largest_lane(float x) { return x; }
 [[gnu::always_inline]] inline float largest_lane(Float8 x) {
@@ -119,6 +137,10 @@ template <class V>
     return static_cast<int>((v[0] & 1) | (v[1] & 2) | (v[2] & 4) | (v[3] & 8));
 #endif
 }
+/// Whether a <= b in all lanes.
+[[gnu::always_inline]] inline bool nowhere_above(float a, float b) { return a <= b; }
+[[gnu::always_inline]] inline bool nowhere_above(Float8 a, Float8 b);
+
 /// Bit i is set where a[i] <= b[i].
 [[gnu::always_inline]] inline std::uint32_t not_above(Float8 a, Float8 b) {
 #ifdef __AVX__
@@ -128,6 +150,10 @@ template <class V>
     for (std::size_t i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(a[i] <= b[i]) << i;
     return bits;
 #endif
+}
+
+[[gnu::always_inline]] inline bool nowhere_above(Float8 a, Float8 b) {
+    return not_above(a, b) == (1u << kLanes) - 1;
 }
 
 /// The numbers of the lanes whose bits are set, ascending, then zeros; by the bits.

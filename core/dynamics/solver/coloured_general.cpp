@@ -137,7 +137,8 @@ template <class F>
     std::array<F, 6> mass;
     for (std::size_t i = 0; i < 6; ++i) mass[i] = lane.load(masses[i]);
     const LaneVec4<F> sticking = old - times(mass, slip);
-    const LaneVec4<F> sliding = clamped<F>(old - lane.load(slide_mass) * slip, most);
+    if (simd::nowhere_above(dot(sticking, sticking), most * most)) return sticking;
+    const LaneVec4<F> sliding = clamped<F>(sum(old, -lane.load(slide_mass), slip), most);
     const auto sticks = dot(sticking, sticking) <= most * most;
     return {sticks ? sticking[0] : sliding[0], sticks ? sticking[1] : sliding[1],
             sticks ? sticking[2] : sliding[2], F{}};
@@ -180,7 +181,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         if constexpr (kFriction) {
             GeneralFriction& friction = coloured.general_friction[k];
             LaneVec4<F> slip =
-                (v + load(lane, friction.slip)) + change * load(lane, friction.normal_response);
+                sum(v + load(lane, friction.slip), change, load(lane, friction.normal_response));
             slip[3] = F{};  // that along the normal
             const LaneVec4<F> old = load(lane, friction.impulse);
             const LaneVec4<F> tangent = friction_impulse<F>(

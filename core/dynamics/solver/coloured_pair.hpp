@@ -21,18 +21,12 @@ template <class F>
 struct Inverse<F, true> {
     std::array<F, 24> e;  ///< as BodyInertia
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& m) const {
-        return {
-            (e[0] * m[0] + e[1] * m[1]) + (e[2] * m[2] + e[3] * m[3]) + (e[4] * m[4] + e[5] * m[5]),
-            (e[1] * m[0] + e[6] * m[1]) + (e[7] * m[2] + e[8] * m[3]) +
-                (e[9] * m[4] + e[10] * m[5]),
-            (e[2] * m[0] + e[7] * m[1]) + (e[11] * m[2] + e[12] * m[3]) +
-                (e[13] * m[4] + e[14] * m[5]),
-            (e[3] * m[0] + e[8] * m[1]) + (e[12] * m[2] + e[15] * m[3]) +
-                (e[16] * m[4] + e[17] * m[5]),
-            (e[4] * m[0] + e[9] * m[1]) + (e[13] * m[2] + e[16] * m[3]) +
-                (e[18] * m[4] + e[19] * m[5]),
-            (e[5] * m[0] + e[10] * m[1]) + (e[14] * m[2] + e[17] * m[3]) +
-                (e[19] * m[4] + e[20] * m[5])};
+        const auto row = [&](int i0, int i1, int i2, int i3, int i4, int i5) {
+            return fused(e[i0], m[0], fused(e[i1], m[1], e[i2] * m[2])) +
+                   fused(e[i3], m[3], fused(e[i4], m[4], e[i5] * m[5]));
+        };
+        return {row(0, 1, 2, 3, 4, 5),     row(1, 6, 7, 8, 9, 10),    row(2, 7, 11, 12, 13, 14),
+                row(3, 8, 12, 15, 16, 17), row(4, 9, 13, 16, 18, 19), row(5, 10, 14, 17, 19, 20)};
     }
 };
 
@@ -67,7 +61,7 @@ struct Frame {
         g = h[3] < F{} ? one : -one;
     }
     [[gnu::always_inline]] LaneVec4<F> reflected(const LaneVec4<F>& v) const {
-        return v - dot(h, v) * h;
+        return sum(v, -dot(h, v), h);
     }
     /// B -> B - h ^ (B at h), into the frame and back.
     [[gnu::always_inline]] LaneBivector<F> reflected(const LaneBivector<F>& b) const {
@@ -103,8 +97,8 @@ class LanePair {
     }
     [[gnu::always_inline]] void apply(const LaneVec4<F>& r_a, const LaneVec4<F>& r_b,
                                       const LaneVec4<F>& impulse) {
-        a_.velocity = a_.velocity - a_.inverse_mass * impulse;
-        b_.velocity = b_.velocity + b_.inverse_mass * impulse;
+        a_.velocity = sum(a_.velocity, -a_.inverse_mass, impulse);
+        b_.velocity = sum(b_.velocity, b_.inverse_mass, impulse);
         a_.angular_velocity = a_.angular_velocity - inverse_a_.of(wedge(r_a, impulse));
         b_.angular_velocity = b_.angular_velocity + inverse_b_.of(wedge(r_b, impulse));
     }
@@ -137,8 +131,9 @@ template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> times(const std::array<F, 6>& symmetric,
                                                 const LaneVec4<F>& v) {
     const auto& s = symmetric;
-    return {s[0] * v[0] + s[1] * v[1] + s[2] * v[2], s[1] * v[0] + s[3] * v[1] + s[4] * v[2],
-            s[2] * v[0] + s[4] * v[1] + s[5] * v[2], F{}};
+    return {fused(s[0], v[0], fused(s[1], v[1], s[2] * v[2])),
+            fused(s[1], v[0], fused(s[3], v[1], s[4] * v[2])),
+            fused(s[2], v[0], fused(s[4], v[1], s[5] * v[2])), F{}};
 }
 
 /// Below this part of the cube of the mean response a tangent block is not inverted in float: some

@@ -7,8 +7,8 @@ using namespace lanes;
 
 template <class F>
 [[gnu::always_inline]] inline void apply(const LaneVec4<F>& impulse, Motion<F>& a, Motion<F>& b) {
-    a.velocity = a.velocity - a.inverse_mass * impulse;
-    b.velocity = b.velocity + b.inverse_mass * impulse;
+    a.velocity = sum(a.velocity, -a.inverse_mass, impulse);
+    b.velocity = sum(b.velocity, b.inverse_mass, impulse);
 }
 
 /// A tangent impulse also turns the bodies, whose offsets are arm_a n and -arm_b n.
@@ -119,9 +119,10 @@ template <bool kFriction, bool kRolling, class F>
         RoundFriction& friction = coloured.round_friction[batch];
         const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
         const LaneBivector<F> w = arm_a * a.angular_velocity + arm_b * b.angular_velocity;
-        const LaneVec4<F> slip = load(lane, friction.slip) + ((v - along * n) - velocity_at(w, n));
+        const LaneVec4<F> slip =
+            load(lane, friction.slip) + (sum(v, -along, n) - velocity_at(w, n));
         const LaneVec4<F> old = load(lane, friction.impulse);
-        const LaneVec4<F> tangent = clamped<F>(old - lane.load(friction.mass) * slip,
+        const LaneVec4<F> tangent = clamped<F>(sum(old, -lane.load(friction.mass), slip),
                                                lane.load(friction.friction) * normal_impulse);
         store(lane, tangent, friction.impulse);
         tangent_change = tangent - old;
@@ -129,7 +130,7 @@ template <bool kFriction, bool kRolling, class F>
     }
     if constexpr (kRolling)
         solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
-    apply(change * n + tangent_change, a, b);
+    apply(sum(tangent_change, change, n), a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
     if (!sweep.measured) return F{};

@@ -85,6 +85,25 @@ void add_changes(const ColouredStage& stage, Range bodies) {
     }
 }
 
+void begin_push(const ColouredStage& stage, Range bodies) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
+        coloured.last_changes[i] = coloured.changes[i];
+}
+
+void take_push_back(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        const BodyChange &pushed = step.coloured.changes[i],
+                         &before = step.coloured.last_changes[i];
+        step.velocity[id] -= velocity_change(pushed) - velocity_change(before);
+        if (stage.simulation.needs.turning)
+            step.angular_velocity[id] =
+                step.angular_velocity[id] - (angular_change(pushed) - angular_change(before));
+    }
+}
+
 void take_changes_back(const ColouredStage& stage, Range bodies) {
     StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {

@@ -48,6 +48,10 @@ void add_changes(const ColouredStage& stage, Range bodies);
 /// velocity, as if by an impulse.
 void take_changes_back(const ColouredStage& stage, Range bodies);
 
+/// Keeps the changes of the load, and takes back what the push then changed.
+void begin_push(const ColouredStage& stage, Range bodies);
+void take_push_back(const ColouredStage& stage, Range bodies);
+
 /// One coloured island and its colours.
 class ColouredIsland {
   public:
@@ -55,7 +59,8 @@ class ColouredIsland {
                    bool friction = true)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step, all_.mass_unit[place_], cause, friction} {}
+          stage_{simulation, step,     all_.mass_unit[place_],
+                 cause,      friction, cause == Cause::kLoad && step.pushed[island] != 0} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
@@ -233,11 +238,17 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    step.pushed[island] = is_pushed(simulation, step, island);
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
     step.residual[island] =
         iterate_coloured(coloured, Pass::kSolve, effort_of_load(simulation), threads, lanes);
+    if (simulation.settings.solver == Solver::kImpulse) keep_coloured(coloured, threads);
+    if (step.pushed[island]) {
+        threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
+        iterate_coloured(coloured, Pass::kRelax, effort_of_push(simulation), threads, lanes);
+    }
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }
 
@@ -260,8 +271,10 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
         step.residual[island] =
             iterate_coloured(coloured, Pass::kRelax, effort_of_load(simulation), threads, lanes);
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
+        keep_coloured(coloured, threads);
     }
-    keep_coloured(coloured, threads);
+    if (step.pushed[island])
+        threads.for_bodies(coloured.bodies(), [&](Range bodies) { take_push_back(stage, bodies); });
 }
 
 }  // namespace tesserae

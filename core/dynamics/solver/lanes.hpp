@@ -13,7 +13,7 @@
 namespace tesserae::lanes {
 
 using simd::Float4, simd::Float8;
-using simd::larger, simd::magnitude, simd::square_root, simd::largest_lane;
+using simd::fused, simd::larger, simd::magnitude, simd::square_root, simd::largest_lane;
 
 /// Which lanes of a batch are worked on.
 template <class F>
@@ -101,7 +101,12 @@ struct LaneVec4 {
 };
 template <class F>
 [[gnu::always_inline]] inline F dot(const LaneVec4<F>& a, const LaneVec4<F>& b) {
-    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+    return fused(a[0], b[0], a[1] * b[1]) + fused(a[2], b[2], a[3] * b[3]);
+}
+/// a + k b
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> sum(const LaneVec4<F>& a, F k, const LaneVec4<F>& b) {
+    return {fused(k, b[0], a[0]), fused(k, b[1], a[1]), fused(k, b[2], a[2]), fused(k, b[3], a[3])};
 }
 
 /// Planes in the order xy xz xw yz yw zw, as everywhere.
@@ -124,19 +129,24 @@ struct LaneBivector {
 };
 template <class F>
 [[gnu::always_inline]] inline F dot(const LaneBivector<F>& a, const LaneBivector<F>& b) {
-    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5]);
+    return fused(a[0], b[0], a[1] * b[1]) + fused(a[2], b[2], a[3] * b[3]) +
+           fused(a[4], b[4], a[5] * b[5]);
 }
 template <class F>
 [[gnu::always_inline]] inline LaneBivector<F> wedge(const LaneVec4<F>& a, const LaneVec4<F>& b) {
-    return {a[0] * b[1] - a[1] * b[0], a[0] * b[2] - a[2] * b[0], a[0] * b[3] - a[3] * b[0],
-            a[1] * b[2] - a[2] * b[1], a[1] * b[3] - a[3] * b[1], a[2] * b[3] - a[3] * b[2]};
+    const auto plane = [&](std::size_t i, std::size_t j) {
+        return fused(a[i], b[j], -(a[j] * b[i]));
+    };
+    return {plane(0, 1), plane(0, 2), plane(0, 3), plane(1, 2), plane(1, 3), plane(2, 3)};
 }
 /// tesserae::velocity_at().
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> velocity_at(const LaneBivector<F>& w,
                                                       const LaneVec4<F>& r) {
-    return {-(w[0] * r[1] + w[1] * r[2] + w[2] * r[3]), w[0] * r[0] - (w[3] * r[2] + w[4] * r[3]),
-            (w[1] * r[0] + w[3] * r[1]) - w[5] * r[3], w[2] * r[0] + w[4] * r[1] + w[5] * r[2]};
+    return {fused(-w[0], r[1], fused(-w[1], r[2], -(w[2] * r[3]))),
+            fused(w[0], r[0], fused(-w[3], r[2], -(w[4] * r[3]))),
+            fused(w[1], r[0], fused(w[3], r[1], -(w[5] * r[3]))),
+            fused(w[2], r[0], fused(w[4], r[1], w[5] * r[2]))};
 }
 
 template <class F>

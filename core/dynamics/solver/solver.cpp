@@ -140,13 +140,14 @@ std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t isl
 
 void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
     const bool made = step.has_rows[island];
+    const bool pushed = cause == Cause::kLoad && step.pushed[island];
     ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t index : contacts_of(step, island)) {
         const Contact& contact = step.contacts[index];
         if (!made) *row = make_row(simulation, step, contact);
         const ContactImpulse start =
             cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, *row);
+        start_row(simulation, step, contact, start, cause, pushed, *row);
         if (simulation.needs.rolling) {
             RollingRow& rolling = rolling_row_of(step, *row);
             if (!made) rolling = make_rolling_row(simulation, step, *row);
@@ -194,6 +195,25 @@ void keep_impulses(const Simulation& simulation, StepData& step, std::size_t isl
         impulse.tangent = row->tangent_impulse;
         if (simulation.needs.rolling)
             step.angular_impulses[contact] = angular_impulse_of(*row, rolling_row_of(step, *row));
+        ++row;
+    }
+}
+
+/// From the rows' impulses to those of the load.
+void take_push_back(const Simulation& simulation, StepData& step, std::size_t island) {
+    const ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t contact : contacts_of(step, island)) {
+        const ContactImpulse& load = step.impulses[contact];
+        const Vec4 back = (load.normal - row->normal_impulse) * row->normal +
+                          (load.tangent - row->tangent_impulse);
+        if (simulation.needs.turning)
+            apply_impulse<true>(simulation, step, *row, back);
+        else
+            apply_impulse<false>(simulation, step, *row, back);
+        if (simulation.needs.rolling)
+            apply_angular_impulse(simulation, step, row->a, row->b,
+                                  step.angular_impulses[contact] -
+                                      angular_impulse_of(*row, rolling_row_of(step, *row)));
         ++row;
     }
 }
@@ -263,11 +283,15 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return solve_coloured_island(simulation, step, island, OneThread{});
+    step.pushed[island] = is_pushed(simulation, step, island);
     start_rows(simulation, step, island, Cause::kLoad);
     const std::span<ContactRow> rows = rows_of(step, island);
     apply_recalled(simulation, step, rows);
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation));
+    if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
+    if (step.pushed[island])
+        run_pass(simulation, step, rows, Pass::kRelax, effort_of_push(simulation));
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
@@ -278,8 +302,9 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
         leave_whirling(simulation, step, rows);
         step.residual[island] =
             run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation));
+        keep_impulses(simulation, step, island);
     }
-    keep_impulses(simulation, step, island);
+    if (step.pushed[island]) take_push_back(simulation, step, island);
 }
 
 }  // namespace tesserae

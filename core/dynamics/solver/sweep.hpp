@@ -20,6 +20,10 @@ inline Effort effort_of_load(const Simulation& simulation) {
     const double tolerance = simulation.settings.tolerance;
     return {simulation.settings.iterations, tolerance > 0 ? tolerance : -1, 2};
 }
+/// Of what takes overlap away, after the load: nothing goes on with it.
+inline Effort effort_of_push(const Simulation& simulation) {
+    return {std::min(simulation.settings.iterations, kPushSweeps)};
+}
 /// Of a blow: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
 /// @param fastest   see Blow
 inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts, double fastest) {

@@ -43,24 +43,32 @@ double rebound_velocity(double e, double v0, double g, double s, double h) {
     return std::sqrt(std::max(0.0, half * half + e * e * at_surface - 2 * g * s)) - half;
 }
 
+/// Overlap that is left alone [m].
+double slop_of(const Simulation& simulation, const Contact& contact) {
+    return std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
+}
+
 /// What keeps bodies apart or takes them apart when they are s from touching.
-ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact) {
+ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact,
+                                  bool pushed) {
     const double s = contact.separation;
-    const double slop =
-        std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
+    const double slop = slop_of(simulation, contact);
     ContactTargets targets;
     if (s > -slop) {
         targets.solve = targets.relax = s > 0 ? -s / h : 0;
         return targets;
     }
     const double depth = -(s + slop);
+    // Acts on the second half of the sub-step only, so that it has to be twice as large.
     const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
     if (simulation.settings.solver == Solver::kImpulse) {
-        targets.solve = std::min(fastest, kBiasPart / h * depth);
+        if (pushed)
+            targets.relax = std::min(fastest, 2 * kPushPart / h * depth);
+        else
+            targets.solve = std::min(fastest, kBiasPart / h * depth);
         return targets;
     }
-    // A spring of angular frequency w, integrated implicitly. Its velocity acts on the second half
-    // of the sub-step only, so that it has to be twice as large.
+    // A spring of angular frequency w, integrated implicitly.
     constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
     constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
     targets.solve = std::min(fastest, 2 * kAngle / kSum / h * depth);
@@ -93,7 +101,8 @@ ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
 }  // namespace
 
 ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause) {
+                          const Contact& contact, double normal_velocity, Cause cause,
+                          bool pushed) {
     if (cause == Cause::kBlow)
         return targets_of_blow(step, contact, approach_of(simulation, step, contact),
                                -normal_velocity);
@@ -104,7 +113,19 @@ ContactTargets targets_of(const Simulation& simulation, const StepData& step,
         if (approach.e > 0 && s > -approach.through && (apart || v0 > approach.slowest))
             return targets_of_driven(approach, s, step.h);
     }
-    return targets_of_overlap(simulation, step.h, contact);
+    return targets_of_overlap(simulation, step.h, contact, pushed);
+}
+
+bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
+    if (simulation.settings.solver != Solver::kImpulse) return false;
+    const Range places = step.islands.places(island);
+    bool overlaps = false, is_held = false;
+    for (std::size_t i = places.begin; i < places.end && !(overlaps && is_held); ++i) {
+        const Contact& contact = step.contacts[step.islands.contacts[i]];
+        overlaps |= contact.separation < -slop_of(simulation, contact);
+        is_held |= !simulation.type_of(contact.a).movable || !simulation.type_of(contact.b).movable;
+    }
+    return overlaps && is_held;
 }
 
 Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact) {

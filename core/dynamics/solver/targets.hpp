@@ -12,15 +12,17 @@ enum class Cause {
 };
 
 /// What a row aims at, along the normal; see NormalPass. Of a blow, `solve` is the compression and
-/// `relax` the restitution.
+/// `relax` the restitution; of a load of Solver::kImpulse `relax` is the push, which takes overlap
+/// away.
 struct ContactTargets {
     double keep = 1;   ///< of the solve pass
     double solve = 0;  ///< [m/s]
     double relax = 0;  ///< [m/s]
 };
 /// @param normal_velocity   at which the bodies part, before the first impulse of the cause [m/s]
+/// @param pushed   see is_pushed()
 ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause);
+                          const Contact& contact, double normal_velocity, Cause cause, bool pushed);
 
 /// The velocity of body b relative to body a at the contact point [m/s].
 /// @param turning   see Needs
@@ -30,6 +32,12 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
     return step.velocity[b] + velocity_at(step.angular_velocity[b], r_b) - step.velocity[a] -
            velocity_at(step.angular_velocity[a], r_a);
 }
+
+/// Whether any contact of the island overlaps by more than is left alone, and some body is held: a
+/// push of Solver::kImpulse then takes the overlap away, which is given back when the bodies have
+/// moved. It moves bodies without impulses, and so changes the angular momentum of those that move
+/// against each other; where none is held impulses alone part bodies, and that is kept.
+bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island);
 
 /// How hard an island's bodies hit each other.
 struct Blow {

@@ -163,6 +163,7 @@ struct StepData {
     /// Of `impulses`, `pushing` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, pushing_angular, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
+    std::vector<std::uint8_t> pushed;            ///< of every island: see is_pushed()
     std::vector<double> residual;                ///< of every island [m/s]
     std::vector<BodyId> asleep;                  ///< as in StepMemory, as of now
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
