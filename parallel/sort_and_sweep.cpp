@@ -9,6 +9,7 @@
 
 #include "core/counting_sort.hpp"
 #include "core/dynamics/stages/pairs.hpp"
+#include "core/dynamics/state/room.hpp"
 
 namespace tesserae::parallel {
 namespace {
@@ -322,7 +323,7 @@ void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
 
 /// By counting each body's pairs, and then each body's by their second.
 void SortAndSweep::sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted) {
-    sorted.resize(found_.size());
+    resize_anew(sorted, found_.size());
     counting_sort(
         found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first_,
         [&](std::size_t i, std::size_t place) { sorted[place] = found_[i]; });

@@ -88,7 +88,7 @@ class WallImpulse : public StageObserver {
     void end(Stage stage) override {
         if (stage != Stage::kSolveBlows) return;
         for (std::size_t i = 0; i < step_->contacts.size(); ++i) {
-            const Contact& c = step_->contacts[i];
+            const Contact c = step_->contacts[i];
             if (c.a >= kWalls || !step_->hit[i]) continue;
             const Vec4 change = step_->velocity[c.b] - before_[c.b];
             sum += simulation_->type_of(c.b).mass * c.normal.dot(change);

@@ -10,6 +10,8 @@ namespace tesserae {
 
 /// A point or direction of 4D space; axes x, y, z, w.
 using Vec4 = Eigen::Vector4d;
+/// One that is stored among numbers: its alignment would cost a record a third of its bytes.
+using PackedVec4 = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
 /// Two numbers that belong together, as a shape's two radii.
 using Vec2 = Eigen::Vector2d;
 /// A linear map of 4D space; column i is the image of axis i.

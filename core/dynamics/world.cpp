@@ -1,6 +1,7 @@
 #include "core/dynamics/world.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "core/dynamics/solver/blow.hpp"
@@ -8,12 +9,13 @@
 #include "core/dynamics/stages/kept_contacts.hpp"
 #include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/stages/sleeping.hpp"
+#include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
 namespace {
 
 /// Items of a range at least: some 10 to 50 us of work, far more than a thread costs that takes it.
-constexpr std::size_t kBodyGrain = 256, kPairGrain = 512, kContactGrain = 1024;
+constexpr std::size_t kBodyGrain = 256, kPairGrain = 64, kContactGrain = 1024;
 
 }  // namespace
 
@@ -98,17 +100,21 @@ void World::find_contacts(Schedule& schedule) {
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
     for (bool look = true; look;) {
-        if (keeps) begin_kept(step_, kPairGrain, step_.kept);
-        contacts_.collect(
+        if (keeps) begin_kept(step_, kPairGrain, step_.kept, spare_manifolds_);
+        step_.contacts.restart();
+        contacts_.for_each_wave(
             for_each_range, step_.pairs.size(), kPairGrain,
             [&](Range pairs, std::vector<Contact>& list) {
                 if (keeps)
                     find_kept_contacts(simulation_, step_, pairs, last,
-                                       step_.kept[pairs.begin / kPairGrain], list);
+                                       step_.kept[pairs.begin / kPairGrain], spare_manifolds_,
+                                       list);
                 else
                     tesserae::find_contacts(simulation_, step_, pairs, list);
             },
-            step_.contacts);
+            [&](const auto& lists, double ratio) {
+                step_.contacts.append(for_each_range, lists, ratio);
+            });
         look = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
                wake_touched(simulation_, step_);
         if (look) schedule.choose_pairs(simulation_, step_);
@@ -168,18 +174,26 @@ void World::stop_at_impacts(Schedule& schedule, Impacts::Half half) {
 void World::relax_islands(Schedule& schedule) {
     const Observed stage(*this, Stage::kRelaxIslands, step_.islands.size());
     schedule.relax_islands(simulation_, step_);
-    const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
-        schedule.for_each_range(count, grain, work);
-    };
-    pushing_.collect(
-        for_each_range, step_.impulses.size(), kContactGrain,
-        [&](Range contacts, auto& list) { list_pushing(step_, contacts, list); }, step_.pushing);
-    if (simulation_.needs.rolling)
-        pushing_angular_.collect(
-            for_each_range, step_.impulses.size(), kContactGrain,
-            [&](Range contacts, auto& list) { list_pushing_angular(step_, contacts, list); },
-            step_.pushing_angular);
-    end_substep(simulation_, step_);
+    if (step_.substep + 1 < simulation_.settings.substeps) keep_impulses(schedule);
+}
+
+/// For the next sub-step, or the next step once nothing can go wrong in this one: these are the
+/// memory's. Both are written over what this sub-step started from.
+void World::keep_impulses(Schedule& schedule) {
+    const LeftImpulses left = left_impulses(simulation_, step_);
+    if (!step_.asleep.empty()) return merge_impulses(simulation_, step_, left);
+    const std::size_t count = step_.impulses.size();
+    first_pushing_.assign((count + kContactGrain - 1) / kContactGrain + 1, 0);
+    schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
+        first_pushing_[contacts.begin / kContactGrain + 1] = count_pushing(step_, contacts);
+    });
+    std::partial_sum(first_pushing_.begin(), first_pushing_.end(), first_pushing_.begin());
+    resize_anew(left.impulses, first_pushing_.back());
+    if (simulation_.needs.rolling) resize_anew(left.angular, first_pushing_.back());
+    schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
+        keep_pushing(simulation_, step_, contacts, first_pushing_[contacts.begin / kContactGrain],
+                     left);
+    });
 }
 
 StepReport World::finish_step(Schedule& schedule) {
@@ -188,6 +202,8 @@ StepReport World::finish_step(Schedule& schedule) {
     begin_report(step_);
     schedule.for_each_range(step_.contacts.size(), kReportPiece,
                             [&](Range contacts) { sum_contacts(step_, contacts); });
+    step_.substep = simulation_.settings.substeps - 1;  // the one that ends here
+    keep_impulses(schedule);
     return commit_step(simulation_, step_);
 }
 

@@ -6,6 +6,7 @@
 #include "core/dynamics/stages/chunked_list.hpp"
 #include "core/dynamics/stages/impacts.hpp"
 #include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/stages/kept_contacts.hpp"
 #include "core/dynamics/stages/schedule.hpp"
 #include "core/dynamics/stages/seams.hpp"
 #include "core/dynamics/stages/step.hpp"
@@ -52,18 +53,19 @@ class World {
     void advance_second_half(Schedule& schedule);
     void stop_at_impacts(Schedule& schedule, Impacts::Half half);
     void relax_islands(Schedule& schedule);
+    void keep_impulses(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
     void require_finite(Schedule& schedule) const;
 
     Simulation simulation_;
     StepData step_;
     IslandBuilder island_builder_;
+    SpareManifolds spare_manifolds_;
     ChunkedList<Contact> contacts_;
     Seams seams_;
     Impacts impacts_;
-    std::vector<std::uint8_t> has_fast_;  ///< of every range of kBodyGrain bodies
-    ChunkedList<ContactImpulse> pushing_;
-    ChunkedList<Bivector> pushing_angular_;
+    std::vector<std::uint8_t> has_fast_;      ///< of every range of kBodyGrain bodies
+    std::vector<std::size_t> first_pushing_;  ///< of every range of contacts, and an end
     StageObserver* observer_ = nullptr;
 };
 

@@ -20,18 +20,21 @@ namespace {
 
 /// Bytes of one body's position, rotor, velocity, angular velocity in memory and in a stored step.
 constexpr std::uint64_t kStateBytes = (4 + 8 + 4 + 6) * sizeof(double);
-/// States alive at once: the scene's, the world's before and after a step, two stored steps between
-/// which a frame lies, and the frame's.
-constexpr std::uint64_t kStates = 6;
-/// Of a step, for a movable body: bounds, pairs, contacts and rows, with what the lists have spare.
-/// Measured in piles of 10^4: a sphere with its 3 contact points, a box with 16 (bench, peers).
-constexpr std::uint64_t kSphereStepBytes = 4'000, kStepBytes = 14'000;
+/// States alive at once: while simulating the scene's, where the world begins, and its two about a
+/// step; while rendering the scene's, two stored steps between which a frame lies, and the frame's,
+/// with what reading takes.
+constexpr std::uint64_t kSimulateStates = 4, kRenderStates = 6;
+/// Of a step, for a movable body: bounds, pairs, contacts and rows, and what a checkpoint copies.
+/// Measured: a sphere of a pile of 10^4, a box with 16 contact points (tesserae simulate).
+constexpr std::uint64_t kSphereStepBytes = 2'900, kStepBytes = 10'000;
+/// Of these in a checkpoint: impulses, and a box's manifolds.
+constexpr std::uint64_t kSphereCheckpointBytes = 120, kCheckpointBytes = 1'200;
 /// A body's bounds in the picture's hierarchy and lists.
 constexpr std::uint64_t kPictureBytes = 300;
 /// How a body moves between two stored steps inside an open shutter.
 constexpr std::uint64_t kMotionBytes = 256;
-/// The program, its libraries and their buffers.
-constexpr std::uint64_t kProgramBytes = 100'000'000;
+/// The program, its libraries and their buffers, while it renders and while it simulates.
+constexpr std::uint64_t kRenderProgramBytes = 100'000'000, kSimulateProgramBytes = 25'000'000;
 /// A pixel of a tile in flight, all channels, before and after compression.
 constexpr std::uint64_t kPixelBytes = 200;
 /// The same of its further layers, and of its Cryptomattes.
@@ -127,18 +130,24 @@ std::uint64_t hull_bytes(const std::vector<BodyType>& types) {
     return bytes;
 }
 
-std::uint64_t memory_of(const Scene& scene, const Plan& plan, int threads) {
-    const std::uint64_t spheres = count_if_type(scene.bodies, [&](std::uint32_t number) {
+std::uint64_t movable_spheres(const Scene& scene) {
+    return count_if_type(scene.bodies, [&](std::uint32_t number) {
         const BodyType& type = scene.bodies.types[number];
         return is_movable(type) && std::holds_alternative<Hypersphere>(type.shape);
     });
+}
+
+std::uint64_t memory_to_simulate(const Scene& scene, const Plan& plan) {
+    const std::uint64_t spheres = movable_spheres(scene);
+    return kSimulateProgramBytes + plan.bodies * kSimulateStates * kStateBytes +
+           spheres * kSphereStepBytes + (plan.movable_bodies - spheres) * kStepBytes;
+}
+
+std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads) {
     const auto tile = static_cast<std::uint64_t>(scene.render.tile) * scene.render.tile;
-    std::uint64_t bytes = kProgramBytes + scene.source.size() + scene.effective.size() +
-                          plan.bodies * (kStates * kStateBytes + kPictureBytes) +
-                          spheres * kSphereStepBytes +
-                          (plan.movable_bodies - spheres) * kStepBytes +
+    std::uint64_t bytes = kRenderProgramBytes +
+                          plan.bodies * (kRenderStates * kStateBytes + kPictureBytes) +
                           kTilesOfThread * threads * tile * kPixelBytes;
-    bytes += hull_bytes(scene.bodies.types);
     const render::Channels& channels = scene.render.channels;
     if (channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
     if (channels.cryptomatte)
@@ -167,7 +176,15 @@ Plan make_plan(const Scene& scene, int threads) {
     const render::Crop crop = r.window();
     const auto pixels = static_cast<std::uint64_t>(crop.x1 - crop.x0) * (crop.y1 - crop.y0);
     plan.view_rays = pixels * render::most_view_rays(r) * plan.frames;
-    plan.memory_bytes = memory_of(scene, plan, threads);
+    // One after the other.
+    plan.memory_bytes = std::max(plan.moves ? memory_to_simulate(scene, plan) : 0,
+                                 memory_to_render(scene, plan, threads)) +
+                        hull_bytes(scene.bodies.types) + scene.source.size() +
+                        scene.effective.size();
+    const std::uint64_t spheres = movable_spheres(scene);
+    if (plan.moves)
+        plan.checkpoint_bytes =
+            spheres * kSphereCheckpointBytes + (plan.movable_bodies - spheres) * kCheckpointBytes;
     // A frame lies between two stored steps, its shutter over some more.
     if (plan.moves)
         plan.trajectory_bytes =

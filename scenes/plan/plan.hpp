@@ -34,6 +34,7 @@ struct Plan {
     std::uint64_t view_rays = 0;         ///< of all frames, at most
     std::uint64_t memory_bytes = 0;      ///< estimated peak, program and libraries included
     std::uint64_t trajectory_bytes = 0;  ///< before compression, steps of all frames
+    std::uint64_t checkpoint_bytes = 0;  ///< in it until it is done, where all lie in a heap
 };
 
 Plan make_plan(const Scene& scene, int threads);

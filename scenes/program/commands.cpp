@@ -49,6 +49,7 @@ Json to_json(const Plan& plan) {
             {"view_rays", plan.view_rays},
             {"memory_bytes", plan.memory_bytes},
             {"trajectory_bytes", plan.trajectory_bytes},
+            {"checkpoint_bytes", plan.checkpoint_bytes},
             {"decisions", std::move(decisions)},
             {"warnings", plan.warnings}};
 }
@@ -70,6 +71,9 @@ void print_plan(const Plan& plan, const Cost& cost, std::uint64_t taken) {
     for (const std::string& text : cost.guessed) fmt::print("guessed     {}\n", text);
     fmt::print("memory      {}\n", gigabytes(plan.memory_bytes));
     fmt::print("trajectory  at most {}\n", gigabytes(plan.trajectory_bytes));
+    if (plan.moves)
+        fmt::print("checkpoint  about {}, two of them until it is done\n",
+                   gigabytes(plan.checkpoint_bytes));
     fmt::print("frames      about {}\n", gigabytes(cost.frame_bytes));
     for (const Decision& d : plan.decisions)
         fmt::print("{:9}   {}: {}\n", d.needed ? "needed" : "left out", d.part, d.reason);

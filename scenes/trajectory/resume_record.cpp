@@ -59,39 +59,42 @@ void take(std::string_view& bytes, KeptManifold& m) {
 
 std::string to_bytes(const ResumeRecord& record) {
     std::size_t manifolds = 0;
-    for (const KeptManifolds& list : record.memory.kept) manifolds += list.manifolds.size();
-    std::string body;
-    body.reserve(kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
-                 record.memory.angular_impulses.size() * kAngularBytes +
-                 record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes);
-    put(body, record.rows);
-    put(body, record.first);
-    put(body, record.hash);
-    put(body, record.step);
+    for (const KeptManifolds& list : record.memory.kept) manifolds += list.size();
+    std::string bytes;
+    bytes.reserve(kFrontBytes + kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
+                  record.memory.angular_impulses.size() * kAngularBytes +
+                  record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes);
+    bytes.resize(kFrontBytes);
+    put(bytes, record.rows);
+    put(bytes, record.first);
+    put(bytes, record.hash);
+    put(bytes, record.step);
     const StepMemory& memory = record.memory;
     TSR_ASSERT(memory.asleep.size() == memory.still.size());
     TSR_ASSERT(memory.angular_impulses.empty() ||
                memory.angular_impulses.size() == memory.impulses.size());
-    put(body, static_cast<std::uint64_t>(memory.impulses.size()));
-    put(body, static_cast<std::uint64_t>(memory.asleep.size()));
-    put(body, static_cast<std::uint64_t>(manifolds));
-    for (const ContactImpulse& impulse : memory.impulses) {
-        put(body, impulse.a);
-        put(body, impulse.b);
-        put(body, impulse.feature);
-        put(body, impulse.normal);
-        for (int axis = 0; axis < 4; ++axis) put(body, impulse.tangent[axis]);
+    put(bytes, static_cast<std::uint64_t>(memory.impulses.size()));
+    put(bytes, static_cast<std::uint64_t>(memory.asleep.size()));
+    put(bytes, static_cast<std::uint64_t>(manifolds));
+    for (const KeptImpulse& impulse : memory.impulses) {
+        put(bytes, impulse.a);
+        put(bytes, impulse.b);
+        put(bytes, impulse.feature);
+        put(bytes, impulse.normal);
+        for (int axis = 0; axis < 4; ++axis) put(bytes, impulse.tangent[axis]);
     }
-    for (BodyId island : memory.asleep) put(body, island);
-    for (double time : memory.still) put(body, time);
+    for (BodyId island : memory.asleep) put(bytes, island);
+    for (double time : memory.still) put(bytes, time);
     for (const KeptManifolds& list : memory.kept)
-        for (const KeptManifold& manifold : list.manifolds) put(body, manifold);
-    for (const Bivector& impulse : memory.angular_impulses) put(body, impulse);
-    std::string bytes;
-    bytes.reserve(kFrontBytes + body.size());
-    put(bytes, static_cast<std::uint64_t>(body.size()));
-    put(bytes, hash_of(body));
-    return bytes += body;
+        for (const auto& manifold : list) put(bytes, *manifold);
+    for (const Bivector& impulse : memory.angular_impulses) put(bytes, impulse);
+    // In one string, whose front is known last: the record may be as large as what it saves.
+    const std::string_view body = std::string_view(bytes).substr(kFrontBytes);
+    std::string front;
+    put(front, static_cast<std::uint64_t>(body.size()));
+    put(front, hash_of(body));
+    bytes.replace(0, kFrontBytes, front);
+    return bytes;
 }
 
 std::optional<ResumeRecord> to_record(std::string_view bytes) {
@@ -122,7 +125,7 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
     record.memory.impulses.resize(impulses);
-    for (ContactImpulse& impulse : record.memory.impulses) {
+    for (KeptImpulse& impulse : record.memory.impulses) {
         take(bytes, impulse.a);
         take(bytes, impulse.b);
         take(bytes, impulse.feature);
@@ -133,9 +136,12 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     record.memory.still.resize(bodies);
     for (BodyId& island : record.memory.asleep) take(bytes, island);
     for (double& time : record.memory.still) take(bytes, time);
-    if (manifolds > 0) record.memory.kept.emplace_back().manifolds.resize(manifolds);
-    for (KeptManifolds& list : record.memory.kept)
-        for (KeptManifold& manifold : list.manifolds) take(bytes, manifold);
+    if (manifolds > 0) record.memory.kept.emplace_back().reserve(manifolds);
+    for (std::uint64_t i = 0; i < manifolds; ++i) {
+        KeptManifold manifold;
+        take(bytes, manifold);
+        record.memory.kept[0].push_back(std::make_shared<KeptManifold>(manifold));
+    }
     if (has_angular) record.memory.angular_impulses.resize(impulses);
     for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;

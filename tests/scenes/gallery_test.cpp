@@ -74,7 +74,7 @@ TEST(Gallery, TheDrumsMixerStirsAndIsNotHeldUp) {
     for (int step = 0; step < 240; ++step) {
         world.step(1 / scene.physics->steps_per_second);
         if (step < 192) continue;
-        for (const ContactImpulse& impulse : world.memory().impulses)
+        for (const KeptImpulse& impulse : world.memory().impulses)
             touched += of_mixer(impulse.a) && is_bounded(world.bodies().type_of(impulse.a).shape);
     }
     EXPECT_GT(touched, 48u);

@@ -32,7 +32,7 @@ Blow blow_of_island(const Simulation& simulation, const StepData& step, std::siz
     Blow all;
     const Range places = step.islands.places(island);
     for (std::size_t i = places.begin; i < places.end; ++i) {
-        const Contact& contact = step.contacts[step.islands.contacts[i]];
+        const Contact contact = step.contacts[step.islands.contacts[i]];
         const Blow blow = blow_of(simulation, step, contact);
         all.fastest = std::max(all.fastest, blow.fastest);
         all.returned = std::max(all.returned, blow.returned);

@@ -143,7 +143,7 @@ void start_rows(const Simulation& simulation, StepData& step, std::size_t island
     const bool pushed = cause == Cause::kLoad && step.pushed[island];
     ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t index : contacts_of(step, island)) {
-        const Contact& contact = step.contacts[index];
+        const Contact contact = step.contacts[index];
         if (!made) *row = make_row(simulation, step, contact);
         const ContactImpulse start =
             cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/counting_sort.hpp"
+#include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
 namespace {
@@ -23,13 +24,14 @@ bool is_round(const TypeProperties& type) {
 }
 
 /// How many contacts from this one on have its bodies and its normal.
-std::uint32_t run_length(std::span<const Contact> contacts) {
-    const Contact& first = contacts[0];
-    std::uint32_t length = 1;
-    while (length < std::min(contacts.size(), kManifoldPoints) && contacts[length].a == first.a &&
-           contacts[length].b == first.b && contacts[length].normal == first.normal)
-        ++length;
-    return length;
+std::uint32_t run_length(const ContactList& contacts, std::size_t begin) {
+    const Contact first = contacts[begin];
+    const std::size_t most = std::min(contacts.size() - begin, kManifoldPoints);
+    for (std::uint32_t length = 1; length < most; ++length) {
+        const Contact c = contacts[begin + length];
+        if (c.a != first.a || c.b != first.b || c.normal != first.normal) return length;
+    }
+    return static_cast<std::uint32_t>(most);
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
     ColouredIslands& coloured = step.coloured;
     place_.resize(simulation.bodies.size(), 0);
     list_pairs(simulation, step, island);
-    sorted_.resize(pairs_.size());
+    resize_anew(sorted_, pairs_.size());
     counting_sort(
         pairs_.size(), (kColours + 1) * kKinds, [&](std::size_t i) { return pairs_[i].bucket; },
         start_, [&](std::size_t i, std::size_t place) { sorted_[place] = pairs_[i]; });
@@ -94,25 +96,25 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
 
 void Colouring::end(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
-    coloured.changes.resize(coloured.bodies.size());
-    coloured.last_changes.resize(coloured.bodies.size());
-    coloured.first_changes.resize(coloured.bodies.size());
-    coloured.turned_back.resize(coloured.bodies.size());
-    coloured.last_round.resize(coloured.round.size() * impulses_of_round(coloured));
-    coloured.last_general.resize(coloured.general_rows * impulses_of_general(coloured));
-    if (coloured.turns_unevenly) coloured.inertias.resize(coloured.bodies.size());
+    resize_anew(coloured.changes, coloured.bodies.size());
+    resize_anew(coloured.last_changes, coloured.bodies.size());
+    resize_anew(coloured.first_changes, coloured.bodies.size());
+    resize_anew(coloured.turned_back, coloured.bodies.size());
+    resize_anew(coloured.last_round, coloured.round.size() * impulses_of_round(coloured));
+    resize_anew(coloured.last_general, coloured.general_rows * impulses_of_general(coloured));
+    if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
     if (simulation.settings.solver == Solver::kSoft)
-        coloured.angular_velocity.resize(coloured.bodies.size());
-    coloured.round_rows.resize(coloured.round.size());
-    coloured.frames.resize(coloured.general.size());
-    coloured.rows.resize(coloured.general_rows);
+        resize_anew(coloured.angular_velocity, coloured.bodies.size());
+    resize_anew(coloured.round_rows, coloured.round.size());
+    resize_anew(coloured.frames, coloured.general.size());
+    resize_anew(coloured.rows, coloured.general_rows);
     if (!coloured.friction) return;
-    coloured.round_friction.resize(coloured.round.size());
-    coloured.general_friction.resize(coloured.general_rows);
+    resize_anew(coloured.round_friction, coloured.round.size());
+    resize_anew(coloured.general_friction, coloured.general_rows);
     if (!coloured.rolling) return;
-    coloured.round_rolling.resize(coloured.round.size());
-    coloured.pair_rolling.resize(coloured.general.size());
-    coloured.general_rolling.resize(coloured.general_rows);
+    resize_anew(coloured.round_rolling, coloured.round.size());
+    resize_anew(coloured.pair_rolling, coloured.general.size());
+    resize_anew(coloured.general_rolling, coloured.general_rows);
 }
 
 std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, BodyId id) {
@@ -128,15 +130,14 @@ std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, 
 void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
     pairs_.clear();
     const Range places = step.islands.places(island);
-    const std::span<const Contact> all(step.contacts);
     for (std::size_t i = places.begin; i < places.end;) {
         const std::uint32_t contact = step.islands.contacts[i];
-        const Contact& c = all[contact];
+        const Contact c = step.contacts[contact];
         Pair pair;
         pair.contact = contact;
         pair.a = place_of(simulation, step, c.a);
         pair.b = place_of(simulation, step, c.b);
-        const std::uint32_t points = run_length(all.subspan(contact));
+        const std::uint32_t points = run_length(step.contacts, contact);
         const bool round =
             points == 1 && is_round(simulation.type_of(c.a)) && is_round(simulation.type_of(c.b));
         pair.points = static_cast<std::uint8_t>(points);

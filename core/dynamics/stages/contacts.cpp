@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/contact/find_contacts.hpp"
+#include "core/dynamics/state/room.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {
@@ -33,25 +34,26 @@ void find_contacts(const Simulation& simulation, const StepData& step, Range pai
 }
 
 void begin_contacts(const Simulation& simulation, StepData& step) {
-    step.impulses.resize(step.contacts.size());
-    if (simulation.needs.rolling) step.angular_impulses.resize(step.contacts.size());
-    step.hit.assign(step.contacts.size(), 0);
+    resize_anew(step.impulses, step.contacts.size());
+    if (simulation.needs.rolling) resize_anew(step.angular_impulses, step.contacts.size());
+    resize_anew(step.hit, step.contacts.size());
+    std::fill(step.hit.begin(), step.hit.end(), std::uint8_t{0});
     step.residual.clear();
 }
 
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts) {
     if (contacts.begin == contacts.end) return;
-    const std::vector<ContactImpulse>& last = last_impulses(simulation, step);
+    const std::vector<KeptImpulse>& last = last_impulses(simulation, step);
     const std::vector<Bivector>& angular = last_angular_impulses(simulation, step);
     TSR_ASSERT(!simulation.needs.rolling || angular.size() == last.size());
     auto old = std::lower_bound(
         last.begin(), last.end(), step.contacts[contacts.begin],
-        [](const ContactImpulse& i, const Contact& c) { return key_of(i) < key_of(c); });
+        [](const KeptImpulse& i, const Contact& c) { return key_of(i) < key_of(c); });
     for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
-        const Contact& c = step.contacts[i];
+        const Contact c = step.contacts[i];
         while (old != last.end() && key_of(*old) < key_of(c)) ++old;
         const bool known = old != last.end() && key_of(*old) == key_of(c);
-        step.impulses[i] = known ? *old : ContactImpulse{c.a, c.b, c.feature, 0, Vec4::Zero()};
+        step.impulses[i] = known ? ContactImpulse{old->normal, old->tangent} : ContactImpulse{};
         if (!simulation.needs.rolling) continue;
         step.angular_impulses[i] =
             known ? angular[static_cast<std::size_t>(old - last.begin())] : Bivector{};

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/counting_sort.hpp"
+#include "core/dynamics/state/room.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {
@@ -37,26 +38,28 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
         }
     }
     colouring_.end(simulation, step);
-    step.rows.resize(rows);
-    if (simulation.needs.rolling) step.rolling_rows.resize(rows);
+    resize_anew(step.rows, rows);
+    if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
     if (simulation.needs.restitution || simulation.needs.friction)
-        step.blow_bodies.resize(2 * std::size_t{rows});
+        resize_anew(step.blow_bodies, 2 * std::size_t{rows});
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
-    const std::vector<Contact>& contacts = step.contacts;
+    const ContactList& contacts = step.contacts;
     TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
     const auto movable = [&](BodyId id) { return simulation.type_of(id).movable; };
 
-    // Join, the lower root above the higher one. Contacts are large: only here are they read.
-    parent_.resize(simulation.bodies.size());
+    // Join, the lower root above the higher one.
+    resize_anew(parent_, simulation.bodies.size());
     std::iota(parent_.begin(), parent_.end(), BodyId{0});
-    member_.resize(contacts.size());
+    resize_anew(member_, contacts.size());
+    BodyPair last = {0, 0};
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const Contact& c = contacts[i];
+        const Contact c = contacts[i];
         member_[i] = movable(c.a) ? c.a : c.b;
-        const bool again = i > 0 && c.a == contacts[i - 1].a && c.b == contacts[i - 1].b;
-        if (again || !movable(c.a) || !movable(c.b)) continue;
+        if (BodyPair{c.a, c.b} == last) continue;
+        last = {c.a, c.b};
+        if (!movable(c.a) || !movable(c.b)) continue;
         const BodyId p = root_of(c.a), q = root_of(c.b);
         parent_[std::max(p, q)] = std::min(p, q);
     }
@@ -71,7 +74,7 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         if (number != kNone) number = count++;
 
     Islands& islands = step.islands;
-    islands.contacts.resize(contacts.size());
+    resize_anew(islands.contacts, contacts.size());
     counting_sort(
         contacts.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,
         [&](std::size_t i, std::size_t place) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <memory>
+#include <vector>
+
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
@@ -12,14 +16,38 @@ namespace tesserae {
 // Where it was found is state (StepMemory::kept); with that its contacts are a function of the
 // bodies' state, whether the points are still there or found again after a resume.
 
+/// Records of manifolds that are kept no more, for those found next: a settled step should not have
+/// to ask for memory because a few are found anew.
+class SpareManifolds {
+  public:
+    SpareManifolds() = default;
+    /// A copy has none: no two may use one record.
+    SpareManifolds(const SpareManifolds&) {}
+    SpareManifolds& operator=(const SpareManifolds&) { return *this; }
+
+    /// Empties the lists, and takes what nobody else has; most of many is given back.
+    void collect(std::vector<KeptManifolds>& lists);
+    /// One that is spare or new. Any number of threads may call it.
+    /// @param has_points   it should have memory for points
+    std::shared_ptr<KeptManifold> take(bool has_points);
+
+  private:
+    struct Spares {
+        std::vector<std::shared_ptr<KeptManifold>> list;
+        std::size_t taken = 0;  ///< from its end, since collect()
+    };
+    std::array<Spares, 2> spares_;  ///< without and with memory for points
+};
+
 /// Before find_kept_contacts() is called for all ranges of step.pairs.
 /// @param grain   ranges begin at multiples of it
-void begin_kept(const StepData& step, std::size_t grain, std::vector<KeptManifolds>& kept);
+void begin_kept(const StepData& step, std::size_t grain, std::vector<KeptManifolds>& kept,
+                SpareManifolds& spare);
 
 /// Appends the contacts of the pairs in a range to a list, and writes what they keep.
 /// @param last   what the sub-step before this one kept
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                         const std::vector<KeptManifolds>& last, KeptManifolds& kept,
-                        std::vector<Contact>& list);
+                        SpareManifolds& spare, std::vector<Contact>& list);
 
 }  // namespace tesserae

@@ -77,7 +77,7 @@ struct Placed {
 
 /// Out of the other body: all contacts of a meeting have one normal.
 Vec4 normal_of(const StepData& step, const Meeting& m) {
-    const Contact& contact = step.contacts[m.begin];
+    const Contact contact = step.contacts[m.begin];
     return contact.b == m.body ? contact.normal : Vec4(-contact.normal);
 }
 
@@ -87,14 +87,14 @@ Vec4 point_below(const Contact& contact, BodyId body) {
     return contact.point + half * contact.separation * contact.normal;
 }
 
-std::span<const Contact> contacts_of(const StepData& step, const Meeting& m) {
-    return {step.contacts.data() + m.begin, m.end - m.begin};
+ContactList::Part contacts_of(const StepData& step, const Meeting& m) {
+    return step.contacts.part(m.begin, m.end);
 }
 
 /// Of the deepest point, at least 0.
 double depth_of(const StepData& step, const Meeting& m) {
     double depth = 0;
-    for (const Contact& c : contacts_of(step, m)) depth = std::max(depth, -c.separation);
+    for (const Contact c : contacts_of(step, m)) depth = std::max(depth, -c.separation);
     return depth;
 }
 
@@ -115,12 +115,12 @@ bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData
                 const Meeting& m) {
     const Vec4 normal = normal_of(step, m);
     if (ground.normal.dot(normal) >= kSame) return false;
-    const auto contacts = contacts_of(step, m);
+    const ContactList::Part contacts = contacts_of(step, m);
     const auto height_over = [&](const Face& face, const Contact& c) {
         return face.normal.dot(point_below(c, m.body)) - face.offset;
     };
     const double flush = part_of(simulation.type_of(m.body), kFlush);
-    for (const Contact& c : contacts)
+    for (const Contact c : contacts)
         if (height_over(ground, c) > flush) return false;
     // The points may be few of those where the bodies touch: nor may the other body rise there.
     const Placed other(simulation, step, m.other);
@@ -128,17 +128,18 @@ bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData
     if (!face) return other.depth_under(ground) >= -flush;
     if (face->normal.dot(normal) >= kSame) return false;
     const double skin = part_of(simulation.type_of(m.body), kSkin);
-    return std::all_of(contacts.begin(), contacts.end(),
-                       [&](const Contact& c) { return height_over(*face, c) >= -skin; });
+    for (const Contact c : contacts)
+        if (!(height_over(*face, c) >= -skin)) return false;
+    return true;
 }
 
 /// Whether all points on a shape are near another rim of the face that they lie on.
 template <HasFaces S>
-bool lie_on_a_rim(const S& shape, const Pose& pose, BodyId body, std::span<const Contact> contacts,
+bool lie_on_a_rim(const S& shape, const Pose& pose, BodyId body, const ContactList::Part& contacts,
                   double depth) {
     const Mat4 turn = to_matrix(pose.rotor).transpose();
     std::uint64_t faces = ~std::uint64_t{0};
-    for (const Contact& c : contacts)
+    for (const Contact c : contacts)
         faces &= faces_near(shape, turn * (point_below(c, body) - pose.position), depth);
     return std::popcount(faces) > 1;  // beside the face itself
 }

@@ -48,17 +48,18 @@ void Seams::correct(const Simulation& simulation, StepData& step, Schedule& sche
 /// Every meeting is one of either body.
 template <class Choose>
 void Seams::list_meetings(const StepData& step, Schedule& schedule, const Choose& choose) {
-    const std::vector<Contact>& contacts = step.contacts;
+    const ContactList& contacts = step.contacts;
     const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
         schedule.for_each_range(count, grain, work);
     };
     const auto list_range = [&](Range range, std::vector<Meeting>& list) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (i > 0 && same_pair(contacts[i - 1], contacts[i])) continue;
+            const Contact contact = contacts[i];
+            if (i > 0 && same_pair(contacts[i - 1], contact)) continue;
             std::size_t end = i + 1;  // in the next range perhaps
-            while (end < contacts.size() && same_pair(contacts[i], contacts[end])) ++end;
+            while (end < contacts.size() && same_pair(contact, contacts[end])) ++end;
             const auto [first, last] = std::pair(std::uint32_t(i), std::uint32_t(end));
-            const BodyId a = contacts[i].a, b = contacts[i].b;
+            const BodyId a = contact.a, b = contact.b;
             for (Meeting m : {Meeting{a, b, first, last}, Meeting{b, a, first, last}})
                 if (choose(m)) list.push_back(m);
         }
@@ -77,11 +78,10 @@ void Seams::splice(StepData& step) {
                   return std::tie(c.begin, c.cosine, c.first) <
                          std::tie(d.begin, d.cosine, d.first);
               });
-    corrected_.clear();
+    corrected_.restart();
     std::uint32_t done = 0;
-    const auto copy = [&](const std::vector<Contact>& from, std::uint32_t begin,
-                          std::uint32_t end) {
-        corrected_.insert(corrected_.end(), from.begin() + begin, from.begin() + end);
+    const auto copy = [&](const auto& from, std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end; ++i) corrected_.push_back(from[i]);
     };
     for (const SeamCorrection& c : corrections) {
         if (c.begin < done) continue;
@@ -90,7 +90,7 @@ void Seams::splice(StepData& step) {
         done = c.end;
     }
     copy(step.contacts, done, static_cast<std::uint32_t>(step.contacts.size()));
-    step.contacts.swap(corrected_);
+    std::swap(step.contacts, corrected_);
 }
 
 }  // namespace tesserae

@@ -26,7 +26,7 @@ class Seams {
     std::vector<Meeting> meetings_;        ///< ascending (body, begin)
     std::vector<std::uint8_t> is_marked_;  ///< of every body: the judge has to look at it
     SeamJudge judge_;
-    std::vector<Contact> corrected_;
+    ContactList corrected_;
 };
 
 }  // namespace tesserae

@@ -37,7 +37,7 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
         const Range places = step.islands.places(island);
         if (std::all_of(first + places.begin, first + places.end,
                         [&](std::uint32_t place) {
-                            const Contact& contact = step.contacts[place];
+                            const Contact contact = step.contacts[place];
                             if (step.impulses[place].normal > 0)
                                 is_supported = is_supported ||
                                                !simulation.type_of(contact.a).movable ||
@@ -60,7 +60,7 @@ bool touches_sleeper(const StepData& step, Range contacts) {
 bool wake_touched(const Simulation& simulation, StepData& step) {
     if (step.asleep.empty()) return false;
     std::vector<BodyId> woken;
-    for (const Contact& contact : step.contacts)
+    for (const Contact contact : step.contacts)
         for (const BodyId id : {contact.a, contact.b})
             if (is_asleep(step, id)) woken.push_back(step.asleep[id]);
     if (woken.empty()) return false;
@@ -98,7 +98,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < lowest.size(); ++island)
         for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
              ++i) {
-            const Contact& contact = step.contacts[step.islands.contacts[i]];
+            const Contact contact = step.contacts[step.islands.contacts[i]];
             for (const BodyId id : {contact.a, contact.b})
                 if (simulation.type_of(id).movable) next[id] = lowest[island];
         }

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "core/dynamics/stages/sleeping.hpp"
+#include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
 namespace {
 
-StepReport report_of(const StepData& step) {
+StepReport report_of(const Simulation& simulation, const StepData& step) {
     StepReport report;
     double sum = 0;
     for (const ContactSums& piece : step.sums) {
@@ -23,27 +23,16 @@ StepReport report_of(const StepData& step) {
     for (const double residual : step.residual)
         report.residual = std::max(report.residual, residual);
     if (step.asleep.empty()) return report;
-    for (const ContactImpulse& impulse : step.recalled)
+    for (const KeptImpulse& impulse : simulation.memory.impulses)
         if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) ++report.contacts;
     for (BodyId id = 0; id < step.asleep.size(); ++id) report.asleep += is_asleep(step, id);
     return report;
 }
 
-/// As end_substep() does with the impulses themselves, which are the last ones still.
-void merge_angular_impulses(const Simulation& simulation, StepData& step) {
-    const std::vector<ContactImpulse>& last = last_impulses(simulation, step);
-    const std::vector<Bivector>& last_angular = last_angular_impulses(simulation, step);
-    std::vector<Bivector>& all = step.merged_angular;
-    all.clear();
-    std::size_t own = 0;
-    for (std::size_t i = 0; i < last.size(); ++i) {
-        if (!is_asleep(step, last[i].a) && !is_asleep(step, last[i].b)) continue;
-        for (; own < step.pushing.size() && key_of(step.pushing[own]) < key_of(last[i]); ++own)
-            all.push_back(step.pushing_angular[own]);
-        all.push_back(last_angular[i]);
-    }
-    for (; own < step.pushing.size(); ++own) all.push_back(step.pushing_angular[own]);
-    step.recalled_angular.swap(all);
+KeptImpulse kept_impulse(const StepData& step, std::size_t contact) {
+    const Contact c = step.contacts[contact];
+    const ContactImpulse& impulse = step.impulses[contact];
+    return {c.a, c.b, c.feature, impulse.normal, impulse.tangent};
 }
 
 }  // namespace
@@ -118,37 +107,59 @@ void require_finite(const Simulation& simulation, const StepData& step) {
             throw LeftFiniteRange(static_cast<BodyId>(i), simulation.memory.time + step.dt);
 }
 
-void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpulse>& list) {
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
-        if (step.impulses[i].normal > 0) list.push_back(step.impulses[i]);
+LeftImpulses left_impulses(Simulation& simulation, StepData& step) {
+    if (step.substep + 1 < simulation.settings.substeps)
+        return {step.recalled, step.recalled_angular};
+    return {simulation.memory.impulses, simulation.memory.angular_impulses};
 }
 
-void list_pushing_angular(const StepData& step, Range contacts, std::vector<Bivector>& list) {
+std::size_t count_pushing(const StepData& step, Range contacts) {
+    std::size_t count = 0;
     for (std::size_t i = contacts.begin; i < contacts.end; ++i)
-        if (step.impulses[i].normal > 0) list.push_back(step.angular_impulses[i]);
+        count += step.impulses[i].normal > 0 ? 1 : 0;
+    return count;
 }
 
-void end_substep(const Simulation& simulation, StepData& step) {
-    if (step.asleep.empty()) {
-        step.recalled.swap(step.pushing);
-        step.recalled_angular.swap(step.pushing_angular);
-        return;
+void keep_pushing(const Simulation& simulation, const StepData& step, Range contacts,
+                  std::size_t place, const LeftImpulses& left) {
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
+        if (!(step.impulses[i].normal > 0)) continue;
+        left.impulses[place] = kept_impulse(step, i);
+        if (simulation.needs.rolling) left.angular[place] = step.angular_impulses[i];
+        ++place;
     }
-    if (simulation.needs.rolling) merge_angular_impulses(simulation, step);
-    // Merge. The last impulses may be step.recalled, so that the list is another one.
-    std::vector<ContactImpulse>& all = step.merged_impulses;
-    all.clear();
-    auto own = step.pushing.begin();
-    for (const ContactImpulse& impulse : last_impulses(simulation, step)) {
-        if (!is_asleep(step, impulse.a) && !is_asleep(step, impulse.b)) continue;
-        for (; own != step.pushing.end() && key_of(*own) < key_of(impulse); ++own)
-            all.push_back(*own);
-        all.push_back(impulse);
+}
+
+void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpulses& left) {
+    const bool rolling = simulation.needs.rolling;
+    const std::vector<KeptImpulse>& last = last_impulses(simulation, step);
+    const std::vector<Bivector>& last_angular = last_angular_impulses(simulation, step);
+    const auto sleeps = [&](const KeptImpulse& impulse) {
+        return is_asleep(step, impulse.a) || is_asleep(step, impulse.b);
+    };
+    const std::size_t count =
+        count_pushing(step, {0, step.impulses.size()}) +
+        static_cast<std::size_t>(std::count_if(last.begin(), last.end(), sleeps));
+    reserve_anew(step.merged_impulses, count);
+    if (rolling) reserve_anew(step.merged_angular, count);
+
+    std::size_t own = 0;
+    const auto add_own = [&](const auto& comes_first) {
+        for (; own < step.contacts.size() && comes_first(step.contacts[own]); ++own) {
+            if (!(step.impulses[own].normal > 0)) continue;
+            step.merged_impulses.push_back(kept_impulse(step, own));
+            if (rolling) step.merged_angular.push_back(step.angular_impulses[own]);
+        }
+    };
+    for (std::size_t i = 0; i < last.size(); ++i) {
+        if (!sleeps(last[i])) continue;
+        add_own([&](const Contact& c) { return key_of(c) < key_of(last[i]); });
+        step.merged_impulses.push_back(last[i]);
+        if (rolling) step.merged_angular.push_back(last_angular[i]);
     }
-    // One by one, so that the list has room to grow: inserted at once it would have none, and be
-    // moved at each new contact.
-    std::copy(own, step.pushing.end(), std::back_inserter(all));
-    step.recalled.swap(all);
+    add_own([](const Contact&) { return true; });
+    left.impulses.swap(step.merged_impulses);
+    left.angular.swap(step.merged_angular);
 }
 
 void begin_report(StepData& step) {
@@ -171,11 +182,9 @@ void sum_contacts(StepData& step, Range contacts) {
 }
 
 StepReport commit_step(Simulation& simulation, StepData& step) {
-    const StepReport report = report_of(step);
+    const StepReport report = report_of(simulation, step);
     StepMemory& memory = simulation.memory;
     memory.time += step.dt;
-    std::swap(memory.impulses, step.recalled);
-    std::swap(memory.angular_impulses, step.recalled_angular);
     if (simulation.settings.sleeping) fall_asleep(simulation, step);
     std::swap(memory.asleep, step.asleep);
     std::swap(memory.kept, step.kept);

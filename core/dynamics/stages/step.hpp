@@ -28,13 +28,21 @@ bool is_finite(const Simulation& simulation, const StepData& step, Range bodies)
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);
 
-/// Appends those of step.impulses in the range that are > 0.
-void list_pushing(const StepData& step, Range contacts, std::vector<ContactImpulse>& list);
-/// The same of step.angular_impulses.
-void list_pushing_angular(const StepData& step, Range contacts, std::vector<Bivector>& list);
+/// The impulses that the sub-step leaves to the next, or the step if it is its last, are those of
+/// step.impulses that are > 0, ascending, and of bodies that sleep the last ones.
+struct LeftImpulses {
+    std::vector<KeptImpulse>& impulses;
+    std::vector<Bivector>& angular;  ///< where there is rolling friction
+};
+LeftImpulses left_impulses(Simulation& simulation, StepData& step);
 
-/// Keeps step.pushing for the next sub-step, beside the impulses of bodies that sleep.
-void end_substep(const Simulation& simulation, StepData& step);
+/// How many of step.impulses in the range are > 0.
+std::size_t count_pushing(const StepData& step, Range contacts);
+/// Writes these to the places from `place` on.
+void keep_pushing(const Simulation& simulation, const StepData& step, Range contacts,
+                  std::size_t place, const LeftImpulses& left);
+/// All of them, beside those of bodies that sleep: where sleeping is on.
+void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpulses& left);
 
 /// Contacts that are added up one after the other; the sums of pieces are then added in their
 /// order, so that the report has the same bits for any number of threads.
@@ -46,7 +54,7 @@ void begin_report(StepData& step);
 void sum_contacts(StepData& step, Range contacts);
 
 /// Makes the step's result the present state, and what the next one needs of it the memory. Needs
-/// step.sums.
+/// step.sums and the memory's impulses.
 StepReport commit_step(Simulation& simulation, StepData& step);
 
 }  // namespace tesserae

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/algebra/rotor.hpp"
@@ -10,50 +11,54 @@
 
 namespace tesserae {
 
-/// What a contact point's rows ended with: where the next step's solver starts.
+/// What a contact point's rows start from, and what they end with.
 struct ContactImpulse {
-    BodyId a = 0, b = 0;          ///< a < b
-    std::uint32_t feature = 0;    ///< which point of the pair; stays the same while the features do
-    double normal = 0;            ///< [N s], >= 0
-    Vec4 tangent = Vec4::Zero();  ///< friction impulse on b, world [N s]
+    double normal = 0;                        ///< [N s], >= 0
+    PackedVec4 tangent = PackedVec4::Zero();  ///< friction impulse on b, world [N s]
 };
 
-/// The manifold of two bodies that hardly move against each other, as it was found in the frame of
-/// a where b was at `offset` and turned by `rotor`. That alone is state; the rest follows from it.
-struct KeptManifold {
-    enum class Keeps : std::uint8_t { kUnknown, kNothing, kNormalOfA, kNormalOfB, kNoFace };
-
-    BodyId a = 0, b = 0;         ///< a < b
-    Vec4 offset = Vec4::Zero();  ///< [m]
-    Rotor rotor;                 ///< b's frame to a's
-    Keeps keeps = Keeps::kUnknown;
-    std::uint32_t first = 0, count = 0;  ///< its points
-    Vec4 normal = Vec4::Zero();          ///< from a to b where it was found, in a's frame
+/// What a contact point's rows ended with: where the next step's solver starts.
+struct KeptImpulse {
+    BodyId a = 0, b = 0;        ///< a < b
+    std::uint32_t feature = 0;  ///< which point of the pair; stays the same while the features do
+    double normal = 0;          ///< [N s], > 0
+    PackedVec4 tangent = PackedVec4::Zero();  ///< friction impulse on b, world [N s]
 };
+
 struct KeptPoint {
     std::array<double, 4> on_a;  ///< in a's frame [m]
     double separation;           ///< where it was found, along the normal [m]
     std::uint32_t feature;
 };
-/// Those of a range of pairs.
-struct KeptManifolds {
-    std::vector<KeptManifold> manifolds;  ///< ascending (a, b), from list to list too
+/// The manifold of two bodies that hardly move against each other, as it was found in the frame of
+/// a where b was at `offset` and turned by `rotor`. That alone is state; the rest follows from it.
+struct KeptManifold {
+    enum class Keeps : std::uint8_t { kUnknown, kNothing, kNormalOfA, kNormalOfB, kNoFace };
+
+    BodyId a = 0, b = 0;                     ///< a < b
+    PackedVec4 offset = PackedVec4::Zero();  ///< [m]
+    Rotor rotor;                             ///< b's frame to a's
+    PackedVec4 normal = PackedVec4::Zero();  ///< from a to b where it was found, in a's frame
     std::vector<KeptPoint> points;
+    Keeps keeps = Keeps::kUnknown;
 };
+/// Those of a range of pairs. What is kept from step to step is there once, in both steps' lists,
+/// and is not changed; none is made as a constant, so that its memory can be used again.
+using KeptManifolds = std::vector<std::shared_ptr<const KeptManifold>>;
 
 /// Everything beside the bodies' state that one step leaves to the next and that changes results.
 /// Saved with a trajectory so that a resumed run continues bit for bit.
 struct StepMemory {
-    std::vector<ContactImpulse> impulses;  ///< ascending (a, b, feature)
+    std::vector<KeptImpulse> impulses;  ///< ascending (a, b, feature)
     /// Of each of `impulses` what held rolling and twisting, on b, world [N m s]; empty where there
     /// is no rolling friction.
     std::vector<Bivector> angular_impulses;
     /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
     /// in, or kAwake.
     std::vector<BodyId> asleep;
-    std::vector<KeptManifolds> kept;
-    std::vector<double> still;  ///< how long every body has hardly moved [s], or empty
-    double time = 0;            ///< of all steps so far [s]; changes no result, messages name it
+    std::vector<KeptManifolds> kept;  ///< ascending (a, b), from list to list too
+    std::vector<double> still;        ///< how long every body has hardly moved [s], or empty
+    double time = 0;  ///< of all steps so far [s]; changes no result, messages name it
 };
 constexpr BodyId kAwake = std::numeric_limits<BodyId>::max();
 

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "core/contact/contact.hpp"
 #include "core/dynamics/state/bodies.hpp"
 #include "core/dynamics/state/coloured_rows.hpp"
+#include "core/dynamics/state/contact_list.hpp"
 #include "core/dynamics/state/memory.hpp"
 #include "core/dynamics/state/needs.hpp"
 #include "core/dynamics/state/settings.hpp"
@@ -149,19 +149,18 @@ struct StepData {
     /// World, in the middle of the sub-step, of the bodies that are not isotropic and awake.
     std::vector<BivectorMap> inverse_inertia;
 
-    std::vector<Bounds> bounds;     ///< of every body
-    std::vector<BodyPair> pairs;    ///< ascending
-    std::vector<Contact> contacts;  ///< ascending (a, b, feature)
+    std::vector<Bounds> bounds;   ///< of every body
+    std::vector<BodyPair> pairs;  ///< ascending
+    ContactList contacts;         ///< ascending (a, b, feature)
     Islands islands;
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
     std::vector<RollingRow> rolling_rows;  ///< of `rows`, where there is rolling friction
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
-    std::vector<ContactImpulse> pushing;   ///< those of them that are > 0 after the sub-step
-    std::vector<ContactImpulse> recalled;  ///< what a finished sub-step leaves to the next
-    /// Of `impulses`, `pushing` and `recalled`, where there is rolling friction; see StepMemory.
-    std::vector<Bivector> angular_impulses, pushing_angular, recalled_angular;
+    std::vector<KeptImpulse> recalled;     ///< what a sub-step leaves to the next of the step
+    /// Of `impulses` and `recalled`, where there is rolling friction; see StepMemory.
+    std::vector<Bivector> angular_impulses, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
     std::vector<std::uint8_t> pushed;            ///< of every island: see is_pushed()
     std::vector<double> residual;                ///< of every island [m/s]
@@ -169,7 +168,7 @@ struct StepData {
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
-    std::vector<ContactImpulse> merged_impulses;
+    std::vector<KeptImpulse> merged_impulses;
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
@@ -184,8 +183,8 @@ auto key_of(const ContactOrImpulse& c) {
 }
 
 /// What the sub-step before this one left.
-inline const std::vector<ContactImpulse>& last_impulses(const Simulation& simulation,
-                                                        const StepData& step) {
+inline const std::vector<KeptImpulse>& last_impulses(const Simulation& simulation,
+                                                     const StepData& step) {
     return step.substep == 0 ? simulation.memory.impulses : step.recalled;
 }
 

@@ -73,7 +73,7 @@ TEST(Memory, AscendsByPair) {
     const auto& impulses = world.memory().impulses;
     ASSERT_GT(impulses.size(), 50u);
     for (std::size_t i = 0; i < impulses.size(); ++i) {
-        const ContactImpulse& p = impulses[i];
+        const KeptImpulse& p = impulses[i];
         EXPECT_LT(p.a, p.b);
         EXPECT_GT(p.normal, 0);
         EXPECT_LE(p.tangent.norm(), 0.5 * p.normal * (1 + 1e-12));  // mu = 0.5

@@ -40,7 +40,7 @@ std::string content_of(const fs::path& file) {
 std::vector<KeptManifold> kept_of(const StepMemory& memory) {
     std::vector<KeptManifold> all;
     for (const KeptManifolds& list : memory.kept)
-        all.insert(all.end(), list.manifolds.begin(), list.manifolds.end());
+        for (const auto& manifold : list) all.push_back(*manifold);
     return all;
 }
 

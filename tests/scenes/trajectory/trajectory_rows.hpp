@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -56,10 +57,11 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
                                         {normal(random), normal(random), 0, 1}});
     for (std::uint32_t i = 0; i < (row % 4 == 0 ? bodies / 2 : 0); ++i) {
         if (i % 3 == 0) made.memory.kept.emplace_back();
-        KeptManifold& manifold = made.memory.kept.back().manifolds.emplace_back();
+        KeptManifold manifold;
         manifold.a = i, manifold.b = i + 1;
         manifold.offset = {normal(random), -0.0, 1, 5e-324};
         manifold.rotor = {normal(random), {1, 2, normal(random), 4, 5, 6}, normal(random)};
+        made.memory.kept.back().push_back(std::make_shared<KeptManifold>(manifold));
     }
     for (std::size_t i = 0; i < (row % 3 == 0 ? made.memory.impulses.size() : 0); ++i)
         made.memory.angular_impulses.push_back({normal(random), 1, -0.0, 0, 5e-324, 2});

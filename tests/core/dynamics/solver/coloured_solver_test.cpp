@@ -74,9 +74,8 @@ Unsolved random_island(Solver solver, double friction, bool spheres_only, double
                 contact.separation = 1e-3 * random_vector(random, 1)[0] - 1e-3;
                 contact.point = world.step.position[a] + random_vector(random, 0.7);
                 world.step.contacts.push_back(contact);
-                world.step.impulses.push_back({a, b, i,
-                                               std::max(0.0, random_vector(random, 0.01)[0]),
-                                               random_vector(random, 0.01)});
+                world.step.impulses.push_back(
+                    {std::max(0.0, random_vector(random, 0.01)[0]), random_vector(random, 0.01)});
                 world.step.hit.push_back(0);
             }
         }

@@ -55,7 +55,7 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
 
         const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
         StepData step;
-        step.contacts = contacts;
+        step.contacts = ContactList(contacts);
         IslandBuilder builder;
         builder.build(simulation, step);
 

@@ -31,8 +31,9 @@ class PairAtRest {
     }
     std::vector<Contact> find_kept() {
         std::vector<Contact> list;
-        begin_kept(step_, 1, step_.kept);
-        find_kept_contacts(simulation_, step_, {0, 1}, step_.last_kept, step_.kept[0], list);
+        begin_kept(step_, 1, step_.kept, spare_);
+        find_kept_contacts(simulation_, step_, {0, 1}, step_.last_kept, step_.kept[0], spare_,
+                           list);
         step_.last_kept = step_.kept;
         return list;
     }
@@ -47,11 +48,12 @@ class PairAtRest {
         return kKeptMotion / kSlop * std::min(types[0].slop, types[1].slop);
     }
     double radius() const { return simulation_.types[1].radius; }
-    const KeptManifold& manifold() const { return step_.kept.at(0).manifolds.at(0); }
+    const KeptManifold& manifold() const { return *step_.kept.at(0).at(0); }
 
   private:
     Simulation simulation_;
     StepData step_;
+    SpareManifolds spare_;
 };
 
 BodyType regular_type(RegularPolychoron regular, double radius) {
@@ -101,7 +103,7 @@ TEST(KeptContacts, AreThoseOfANewSearch) {
         pair.put(0, Vec4::Zero(), Rotor{});
         pair.put(1, offset + (height + gap) * up, turned);
         const std::vector<Contact> first = pair.find_kept();
-        if (first.empty() || pair.manifold().count == 0) continue;  // vertex or edge below
+        if (first.empty() || pair.manifold().points.size() == 0) continue;  // vertex or edge below
         ++kept;
 
         const Rotor together = small_rotor(random, 2);
@@ -196,7 +198,8 @@ TEST(KeptContacts, FollowFromWhereTheyWereFound) {
         World world(wall(5, 4), settings);
         run(world, 40);
         std::size_t points = 0;
-        for (const KeptManifolds& list : world.memory().kept) points += list.points.size();
+        for (const KeptManifolds& list : world.memory().kept)
+            for (const auto& manifold : list) points += manifold->points.size();
         EXPECT_GT(points, 200u);
 
         World again(world.bodies(), settings);
@@ -204,10 +207,11 @@ TEST(KeptContacts, FollowFromWhereTheyWereFound) {
         again.memory().kept.clear();
         again.memory().kept.resize(3);  // lists may be shared out in any way
         for (const KeptManifolds& list : world.memory().kept)
-            for (KeptManifold m : list.manifolds) {
+            for (const auto& manifold : list) {
+                KeptManifold m = *manifold;
                 m.keeps = KeptManifold::Keeps::kUnknown;
-                m.first = 12345, m.count = 7;
-                again.memory().kept[m.a < 8 ? 0 : 2].manifolds.push_back(m);
+                m.points.assign(7, KeptPoint{});
+                again.memory().kept[m.a < 8 ? 0 : 2].push_back(std::make_shared<KeptManifold>(m));
             }
         run(world, 40);
         run(again, 40);

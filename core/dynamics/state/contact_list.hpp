@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "core/contact/contact.hpp"
+#include "core/dynamics/state/room.hpp"
+
+namespace tesserae {
+
+/// Contacts in the order in which they are added. What the points of two bodies share is there
+/// once: a point takes half of a Contact. They are read as such, by value.
+class ContactList {
+  public:
+    class Iterator {
+      public:
+        Iterator(const ContactList& list, std::size_t place) : list_(&list), place_(place) {}
+        Contact operator*() const { return (*list_)[place_]; }
+        Iterator& operator++() {
+            ++place_;
+            return *this;
+        }
+        friend bool operator==(const Iterator&, const Iterator&) = default;
+
+      private:
+        const ContactList* list_;
+        std::size_t place_;
+    };
+    /// Some that follow each other.
+    struct Part {
+        Iterator first, last;
+        Iterator begin() const { return first; }
+        Iterator end() const { return last; }
+    };
+
+    ContactList() = default;
+    explicit ContactList(std::span<const Contact> contacts) {
+        for (const Contact& contact : contacts) push_back(contact);
+    }
+
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    Contact operator[](std::size_t i) const {
+        const Point& point = points_[i];
+        const Shared& shared = shared_[point.shared];
+        return {shared.normal, point.place, point.separation, shared.a, shared.b, point.feature};
+    }
+    Part part(std::size_t begin, std::size_t end) const { return {{*this, begin}, {*this, end}}; }
+    Iterator begin() const { return {*this, 0}; }
+    Iterator end() const { return {*this, size_}; }
+
+    /// Empties it, with memory for about as many contacts as there were.
+    void restart() {
+        prepare(points_, size_);
+        prepare(shared_, shared_size_);
+        size_ = shared_size_ = 0;
+    }
+    void push_back(const Contact& contact) {
+        if (points_.size() == size_) points_.emplace_back();
+        const bool is_shared = size_ > 0 && share(contact, (*this)[size_ - 1]);
+        if (!is_shared) {
+            if (shared_.size() == shared_size_) shared_.emplace_back();
+            shared_[shared_size_++] = {contact.normal, contact.a, contact.b};
+        }
+        write(contact, size_++, shared_size_ - 1);
+    }
+    /// Adds lists one behind the other, of which no two have contacts of the same two bodies.
+    /// @param for_each_range   (count, grain, work): as that of Schedule
+    /// @param ratio            of all contacts to those that there will be then, about
+    template <class Loop>
+    void append(const Loop& for_each_range, std::span<const std::vector<Contact>> lists,
+                double ratio) {
+        starts_.assign(lists.size() + 1, {size_, shared_size_});
+        for_each_range(lists.size(), 1, [&](auto range) {
+            for (std::size_t i = range.begin; i < range.end; ++i)
+                starts_[i + 1] = {lists[i].size(), shared_by(lists[i])};
+        });
+        for (std::size_t i = 1; i < starts_.size(); ++i) {
+            starts_[i].point += starts_[i - 1].point;
+            starts_[i].shared += starts_[i - 1].shared;
+        }
+        grow(points_, size_, starts_.back().point, ratio);
+        grow(shared_, shared_size_, starts_.back().shared, ratio);
+        for_each_range(lists.size(), 1, [&](auto range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) write(lists[i], starts_[i]);
+        });
+        size_ = starts_.back().point;
+        shared_size_ = starts_.back().shared;
+    }
+
+  private:
+    struct Point {
+        PackedVec4 place;
+        double separation;
+        std::uint32_t feature, shared;
+    };
+    struct Shared {
+        PackedVec4 normal;
+        BodyId a, b;
+    };
+    /// Places of a list's first contact and of what it shares.
+    struct Start {
+        std::size_t point, shared;
+    };
+
+    static bool share(const Contact& c, const Contact& d) {
+        return c.a == d.a && c.b == d.b &&
+               std::memcmp(c.normal.data(), d.normal.data(), 4 * sizeof(double)) == 0;
+    }
+    static std::size_t shared_by(const std::vector<Contact>& list) {
+        std::size_t count = list.empty() ? 0 : 1;
+        for (std::size_t i = 1; i < list.size(); ++i) count += share(list[i - 1], list[i]) ? 0 : 1;
+        return count;
+    }
+    void write(const std::vector<Contact>& list, Start start) {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const Contact& c = list[i];
+            const bool is_shared = i > 0 && share(list[i - 1], c);
+            if (i > 0 && !is_shared) ++start.shared;
+            write(c, start.point + i, start.shared);
+            if (!is_shared) shared_[start.shared] = {c.normal, c.a, c.b};
+        }
+    }
+    void write(const Contact& c, std::size_t place, std::size_t shared) {
+        points_[place] = {c.point, c.separation, c.feature, static_cast<std::uint32_t>(shared)};
+    }
+
+    // Those that are used come first. What lies behind them stays, to be written over.
+    std::size_t size_ = 0, shared_size_ = 0;
+    std::vector<Point> points_;
+    std::vector<Shared> shared_;
+    std::vector<Start> starts_;
+};
+
+}  // namespace tesserae
