@@ -40,7 +40,7 @@ class World::Observed {
 World::World(Bodies bodies, const PhysicsSettings& settings)
     : World(make_simulation(std::move(bodies), settings)) {}
 
-World::World(Simulation simulation, std::uint32_t coloured_from)
+World::World(Simulation simulation, ColouredFrom coloured_from)
     : simulation_(std::move(simulation)), island_builder_(coloured_from) {}
 
 StepReport World::step(double dt) {

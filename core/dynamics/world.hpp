@@ -22,8 +22,8 @@ class World {
   public:
     /// @throws InputError   as make_simulation()
     World(Bodies bodies, const PhysicsSettings& settings);
-    /// @param coloured_from   contacts: see IslandBuilder
-    explicit World(Simulation simulation, std::uint32_t coloured_from = kColouredFrom);
+    /// @param coloured_from   for tests and measurements
+    explicit World(Simulation simulation, ColouredFrom coloured_from = {});
 
     /// Advances by dt [s].
     /// @throws InputError        dt is not finite or not > 0

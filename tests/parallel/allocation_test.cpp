@@ -52,11 +52,11 @@ TEST(Allocations, AreNoneInASettledStep) {
             settings.sleeping = sleeping;
             const double rolling = settings.solver == Solver::kSoft ? 0.01 : 0;
             World serial(resting_bodies(rolling), settings);
-            EXPECT_EQ(allocations_after(serial, 30), 0u) << sleeping;
+            EXPECT_EQ(allocations_after(serial, 60), 0u) << sleeping;
             ParallelWorld world(resting_bodies(rolling), settings);
             Threads threads(2);
             // With sleeping: before and after all have fallen asleep.
-            for (const int steps : sleeping ? std::vector{30, 130} : std::vector{30})
+            for (const int steps : sleeping ? std::vector{60, 130} : std::vector{60})
                 threads.run([&] { EXPECT_EQ(allocations_after(world, steps), 0u) << sleeping; });
         }
 }

@@ -117,15 +117,13 @@ ContactTargets targets_of(const Simulation& simulation, const StepData& step,
 }
 
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
-    if (simulation.settings.solver != Solver::kImpulse) return false;
+    if (simulation.settings.solver != Solver::kImpulse || !step.islands.held[island]) return false;
     const Range places = step.islands.places(island);
-    bool overlaps = false, is_held = false;
-    for (std::size_t i = places.begin; i < places.end && !(overlaps && is_held); ++i) {
-        const Contact& contact = step.contacts[step.islands.contacts[i]];
-        overlaps |= contact.separation < -slop_of(simulation, contact);
-        is_held |= !simulation.type_of(contact.a).movable || !simulation.type_of(contact.b).movable;
+    for (std::size_t i = places.begin; i < places.end; ++i) {
+        const Contact contact = step.contacts[step.islands.contacts[i]];
+        if (contact.separation < -slop_of(simulation, contact)) return true;
     }
-    return overlaps && is_held;
+    return false;
 }
 
 Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact) {

@@ -29,7 +29,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < islands.size(); ++island) {
         const Range places = islands.places(island);
         const auto size = static_cast<std::uint32_t>(places.end - places.begin);
-        if (fits && size >= coloured_from_) {
+        if (fits && size >= (islands.held[island] ? coloured_from_.held : coloured_from_.free)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {
@@ -74,6 +74,11 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         if (number != kNone) number = count++;
 
     Islands& islands = step.islands;
+    islands.held.assign(count, 0);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const BodyPair pair = {contacts[i].a, contacts[i].b};
+        if (!movable(pair.a) || !movable(pair.b)) islands.held[number_[member_[i]]] = 1;
+    }
     resize_anew(islands.contacts, contacts.size());
     counting_sort(
         contacts.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,

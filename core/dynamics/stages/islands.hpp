@@ -6,19 +6,27 @@
 
 namespace tesserae {
 
+/// Contacts from which on an island is coloured.
+struct ColouredFrom {
+    std::uint32_t held = kColouredFrom;      ///< where a body touches one that contacts do not move
+    std::uint32_t free = kFreeColouredFrom;  ///< elsewhere
+
+    ColouredFrom() = default;
+    ColouredFrom(std::uint32_t both) : held(both), free(both) {}  // NOLINT: meant to convert
+};
+
 /// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.
 class IslandBuilder {
   public:
-    /// @param coloured_from   contacts; for tests and measurements
-    explicit IslandBuilder(std::uint32_t coloured_from = kColouredFrom)
-        : coloured_from_(coloured_from) {}
+    /// @param coloured_from   for tests and measurements
+    explicit IslandBuilder(ColouredFrom coloured_from = {}) : coloured_from_(coloured_from) {}
 
     /// step.islands, and the rows and batches of their contacts from step.contacts, every one of
     /// which has a movable body.
     void build(const Simulation& simulation, StepData& step);
 
   private:
-    std::uint32_t coloured_from_;
+    ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
     void sort_by_island(const Simulation& simulation, StepData& step);
 

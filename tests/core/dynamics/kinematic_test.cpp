@@ -34,6 +34,7 @@ void expect_carried(const BodyType& block, double half_height) {
     add(bodies, with_surface(block, kFriction), {0, half_height, 0, 0});
     PhysicsSettings settings;
     settings.iterations = 100;  // so that a box's eight corners agree
+    settings.tolerance = 1e-6;
     World world(bodies, settings);
     double time = 0;
     for (int i = 0; i < 240; ++i) {
