@@ -40,12 +40,13 @@ constexpr double kKeptMotion = 0.001;
 /// not touch take the places of those that do; less, and only slower bodies keep theirs.
 constexpr double kKeptMargin = 2;
 
-/// Part of an overlap that a sub-step of Solver::kImpulse removes among bodies that nothing holds
-/// (f in the bias -(f/h) min(0, s + a)), usual 0.2. Towards 1 they jump.
+/// Part of an overlap that a sub-step's load of Solver::kImpulse removes (f in the bias -(f/h)
+/// min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 a wall of 20 rows topples at 10
+/// sweeps.
 constexpr double kBiasPart = 0.2;
 
-/// The part that a push removes; see is_pushed(). Towards 1 a wall of 20 rows topples while it is
-/// pushed, towards 0 bodies stay in each other for long.
+/// The part by which its push moves bodies, see is_pushed(), usual 0.05: from 0.02 to 0.2 a wall
+/// stands as well. Without a push it trembles, by 8 to 17 mm/s at 20 sweeps instead of 2.
 constexpr double kPushPart = 0.05;
 
 /// Sweeps of a push, at most. Fewer, and piles that start inside each other stay so for longer;

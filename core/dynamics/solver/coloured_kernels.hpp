@@ -16,7 +16,6 @@ struct ColouredStage {
     double mass_unit;  ///< [kg]
     Cause cause;
     bool friction = true;  ///< false: rows are made without
-    bool pushed = false;   ///< see is_pushed()
 };
 
 // Of round and of general batches: makes their rows and applies the impulses that they start from;

@@ -34,8 +34,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const Vec4 r_a = c.point - step.position[c.a], r_b = c.point - step.position[c.b];
     const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
-    const ContactTargets targets =
-        targets_of(simulation, step, c, along, stage.cause, stage.pushed);
+    const ContactTargets targets = targets_of(simulation, step, c, along, stage.cause);
     put(c.normal, points.normal[lane]);
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);

@@ -59,8 +59,7 @@ class ColouredIsland {
                    bool friction = true)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step,     all_.mass_unit[place_],
-                 cause,      friction, cause == Cause::kLoad && step.pushed[island] != 0} {}
+          stage_{simulation, step, all_.mass_unit[place_], cause, friction} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }

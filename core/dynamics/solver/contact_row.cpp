@@ -81,11 +81,10 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
 }
 
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
-               const ContactImpulse& impulse, Cause cause, bool pushed, ContactRow& row) {
+               const ContactImpulse& impulse, Cause cause, ContactRow& row) {
     const Vec4 v =
         relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-    const ContactTargets targets =
-        targets_of(simulation, step, contact, row.normal.dot(v), cause, pushed);
+    const ContactTargets targets = targets_of(simulation, step, contact, row.normal.dot(v), cause);
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 

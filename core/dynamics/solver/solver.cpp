@@ -140,14 +140,13 @@ std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t isl
 
 void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
     const bool made = step.has_rows[island];
-    const bool pushed = cause == Cause::kLoad && step.pushed[island];
     ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t index : contacts_of(step, island)) {
         const Contact contact = step.contacts[index];
         if (!made) *row = make_row(simulation, step, contact);
         const ContactImpulse start =
             cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, pushed, *row);
+        start_row(simulation, step, contact, start, cause, *row);
         if (simulation.needs.rolling) {
             RollingRow& rolling = rolling_row_of(step, *row);
             if (!made) rolling = make_rolling_row(simulation, step, *row);

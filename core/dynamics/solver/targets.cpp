@@ -49,8 +49,7 @@ double slop_of(const Simulation& simulation, const Contact& contact) {
 }
 
 /// What keeps bodies apart or takes them apart when they are s from touching.
-ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact,
-                                  bool pushed) {
+ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact) {
     const double s = contact.separation;
     const double slop = slop_of(simulation, contact);
     ContactTargets targets;
@@ -62,10 +61,8 @@ ContactTargets targets_of_overlap(const Simulation& simulation, double h, const 
     // Acts on the second half of the sub-step only, so that it has to be twice as large.
     const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
     if (simulation.settings.solver == Solver::kImpulse) {
-        if (pushed)
-            targets.relax = std::min(fastest, 2 * kPushPart / h * depth);
-        else
-            targets.solve = std::min(fastest, kBiasPart / h * depth);
+        targets.solve = std::min(fastest, kBiasPart / h * depth);
+        targets.relax = std::min(fastest, 2 * kPushPart / h * depth);
         return targets;
     }
     // A spring of angular frequency w, integrated implicitly.
@@ -101,8 +98,7 @@ ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
 }  // namespace
 
 ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause,
-                          bool pushed) {
+                          const Contact& contact, double normal_velocity, Cause cause) {
     if (cause == Cause::kBlow)
         return targets_of_blow(step, contact, approach_of(simulation, step, contact),
                                -normal_velocity);
@@ -113,7 +109,7 @@ ContactTargets targets_of(const Simulation& simulation, const StepData& step,
         if (approach.e > 0 && s > -approach.through && (apart || v0 > approach.slowest))
             return targets_of_driven(approach, s, step.h);
     }
-    return targets_of_overlap(simulation, step.h, contact, pushed);
+    return targets_of_overlap(simulation, step.h, contact);
 }
 
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {

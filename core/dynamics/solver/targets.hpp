@@ -20,9 +20,8 @@ struct ContactTargets {
     double relax = 0;  ///< [m/s]
 };
 /// @param normal_velocity   at which the bodies part, before the first impulse of the cause [m/s]
-/// @param pushed   see is_pushed()
 ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause, bool pushed);
+                          const Contact& contact, double normal_velocity, Cause cause);
 
 /// The velocity of body b relative to body a at the contact point [m/s].
 /// @param turning   see Needs
@@ -34,9 +33,9 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
 }
 
 /// Whether any contact of the island overlaps by more than is left alone, and some body is held: a
-/// push of Solver::kImpulse then takes the overlap away, which is given back when the bodies have
-/// moved. It moves bodies without impulses, and so changes the angular momentum of those that move
-/// against each other; where none is held impulses alone part bodies, and that is kept.
+/// push of Solver::kImpulse then follows the load, with which bodies move, and which is given back
+/// afterwards. So it moves bodies without impulses, which changes the angular momentum of those
+/// that move against each other: where nothing is held that is kept.
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island);
 
 /// How hard an island's bodies hit each other.
