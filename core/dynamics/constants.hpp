@@ -40,14 +40,12 @@ constexpr double kKeptMotion = 0.001;
 /// not touch take the places of those that do; less, and only slower bodies keep theirs.
 constexpr double kKeptMargin = 2;
 
-/// Part of an overlap that a sub-step's load of Solver::kImpulse removes (f in the bias -(f/h)
-/// min(0, s + a)), usual 0.2. Towards 1 stacks jump, towards 0 a wall of 20 rows topples at 10
-/// sweeps.
-constexpr double kBiasPart = 0.2;
-
-/// The part by which its push moves bodies, see is_pushed(), usual 0.05: from 0.02 to 0.2 a wall
-/// stands as well. Without a push it trembles, by 8 to 17 mm/s at 20 sweeps instead of 2.
-constexpr double kPushPart = 0.05;
+/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias -(f/h) min(0, s +
+/// a)), and by which its push moves bodies, see is_pushed(); usual 0.2 where there is no push.
+/// Towards 1 stacks jump and bodies that start inside each other are thrown apart, towards 0 a wall
+/// of 20 rows topples at 10 sweeps. Without a push it trembles, by 8 to 17 mm/s at 20 sweeps
+/// instead of 2.
+constexpr double kBiasPart = 0.05;
 
 /// Sweeps of a push, at most. Fewer, and piles that start inside each other stay so for longer;
 /// more cost more while anything overlaps.

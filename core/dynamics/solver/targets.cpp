@@ -62,7 +62,7 @@ ContactTargets targets_of_overlap(const Simulation& simulation, double h, const 
     const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
     if (simulation.settings.solver == Solver::kImpulse) {
         targets.solve = std::min(fastest, kBiasPart / h * depth);
-        targets.relax = std::min(fastest, 2 * kPushPart / h * depth);
+        targets.relax = std::min(fastest, 2 * kBiasPart / h * depth);
         return targets;
     }
     // A spring of angular frequency w, integrated implicitly.
