@@ -125,6 +125,17 @@ TEST(Rest, OfTenBoards) {
     }
 }
 
+/// Solved one by one they trembled at 12 mm/s.
+TEST(Rest, OfTwentyStacksOfBoards) {
+    Bodies bodies = on_floor();
+    for (int i = 0; i < 200; ++i)
+        add_box(bodies, {2, 0.1, 0.5, 0.5}, {0, 0.05 + 0.1 * (i % 10), 1.0 * (i / 10), 0});
+    World world(bodies, PhysicsSettings{});
+    run(world, 480);
+    EXPECT_LT(mean_speed(world), 1e-3);
+    EXPECT_LT(world.step(kStep).penetration, 0.1e-3);
+}
+
 TEST(Rest, OfTenBoardsLetsThemSleep) {
     PhysicsSettings settings;
     settings.sleeping = true;

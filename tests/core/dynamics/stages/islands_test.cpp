@@ -78,6 +78,33 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
 
 /// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
 /// to eight points.
+/// A row of spheres; the first one touches a fixed one, or not.
+TEST(Islands, AreColouredFromFewerContactsWhereABodyIsHeld) {
+    for (const bool held : {true, false})
+        for (const std::uint32_t count :
+             {kColouredFrom - 1, kColouredFrom, kFreeColouredFrom - 1, kFreeColouredFrom}) {
+            Bodies bodies;
+            BodyType first = sphere_type(1);
+            first.fixed_position = first.fixed_rotation = held;
+            add(bodies, first);
+            std::vector<Contact> contacts(count);
+            for (BodyId id = 0; id < count; ++id) {
+                add(bodies, sphere_type(1));
+                contacts[id].a = id, contacts[id].b = id + 1;
+            }
+            const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
+            StepData step;
+            step.contacts = ContactList(contacts);
+            IslandBuilder builder;
+            builder.build(simulation, step);
+            ASSERT_EQ(step.islands.size(), 1u);
+            EXPECT_EQ(step.islands.held[0], held);
+            EXPECT_EQ(step.islands.is_coloured(0),
+                      count >= (held ? kColouredFrom : kFreeColouredFrom))
+                << count;
+        }
+}
+
 TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
     std::mt19937_64 engine(7);
     Bodies bodies;
