@@ -183,7 +183,7 @@ void World::keep_impulses(Schedule& schedule) {
     const LeftImpulses left = left_impulses(simulation_, step_);
     if (!step_.asleep.empty()) return merge_impulses(simulation_, step_, left);
     const std::size_t count = step_.impulses.size();
-    first_pushing_.assign((count + kContactGrain - 1) / kContactGrain + 1, 0);
+    first_pushing_.assign(count / kContactGrain + 2, 0);  // of no contacts there is a range too
     schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
         first_pushing_[contacts.begin / kContactGrain + 1] = count_pushing(step_, contacts);
     });
