@@ -47,8 +47,8 @@ constexpr double kKeptMargin = 2;
 /// instead of 2.
 constexpr double kBiasPart = 0.05;
 
-/// Sweeps of a push, at most. Fewer, and piles that start inside each other stay so for longer;
-/// more cost more while anything overlaps.
+/// Sweeps of a push, at most: with 2, 4 and 8 a wall of 20 rows rests alike. More cost more while
+/// anything overlaps.
 constexpr int kPushSweeps = 4;
 
 /// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
