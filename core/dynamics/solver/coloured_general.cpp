@@ -6,125 +6,214 @@ namespace {
 
 using namespace lanes;
 
-/// Planes of the frame that contain the normal, and those that do not.
-using Planes = std::array<std::size_t, 3>;
-constexpr Planes kRollingPlanes = {2, 4, 5}, kTwistingPlanes = {0, 1, 3};
+/// From a pair's centre, across the normal.
+template <class F>
+using Place = std::array<F, 3>;
 
 template <class F>
-[[gnu::always_inline]] inline LaneVec4<F> part_of(const LaneBivector<F>& b, const Planes& planes) {
-    return {b[planes[0]], b[planes[1]], b[planes[2]], F{}};
+[[gnu::always_inline]] inline Place<F> place_of(const Lane<F>& lane, const GeneralRow& row) {
+    return {lane.load(row.at[0]), lane.load(row.at[1]), lane.load(row.at[2])};
 }
+/// The velocity along the normal at a place.
 template <class F>
-[[gnu::always_inline]] inline LaneBivector<F> bivector_of(const LaneVec4<F>& part,
-                                                          const Planes& planes) {
-    LaneBivector<F> b{};
-    for (std::size_t i = 0; i < 3; ++i) b[planes[i]] = part[i];
-    return b;
+[[gnu::always_inline]] inline F along_at(const Place<F>& at, const std::array<F, 4>& motion) {
+    return fused(at[0], motion[1], motion[0]) + fused(at[1], motion[2], at[2] * motion[3]);
+}
+/// That across it.
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> across_at(const Place<F>& at,
+                                                    const std::array<F, 6>& motion) {
+    const auto &[x, y, z] = at;
+    return {fused(-y, motion[3], fused(-z, motion[4], motion[0])),
+            fused(x, motion[3], fused(-z, motion[5], motion[1])),
+            fused(x, motion[4], fused(y, motion[5], motion[2])), F{}};
+}
+/// An impulse across the normal at a place, seen from the centre.
+template <class F>
+[[gnu::always_inline]] inline std::array<F, 6> seen_from_centre(const Place<F>& at,
+                                                                const LaneVec4<F>& q) {
+    const auto &[x, y, z] = at;
+    return {q[0],
+            q[1],
+            q[2],
+            fused(x, q[1], -(y * q[0])),
+            fused(x, q[2], -(z * q[0])),
+            fused(y, q[2], -(z * q[1]))};
 }
 
-template <class F, bool kUneven>
-[[gnu::always_inline]] inline void start_planes(const Lane<F>& lane,
-                                                const LanePair<F, kUneven>& pair,
-                                                const Frame<F>& frame, const Planes& planes,
-                                                std::array<Eight, 6>& mass, Eight& step_mass) {
-    std::array<LaneVec4<F>, 3> K;
-    for (std::size_t i = 0; i < 3; ++i) {
-        LaneVec4<F> unit{};
-        unit[i] = F{} + 1.0f;
-        const LaneBivector<F> impulse = frame.reflected(bivector_of(unit, planes));
-        K[i] = part_of(frame.reflected(pair.response(impulse)), planes);
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void add(const std::array<F, kSize>& x, std::array<F, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) to[i] += x[i];
+}
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline std::array<F, kSize> load_all(const Lane<F>& lane,
+                                                            const std::array<Eight, kSize>& from) {
+    std::array<F, kSize> x;
+    for (std::size_t i = 0; i < kSize; ++i) x[i] = lane.load(from[i]);
+    return x;
+}
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void store_all(const Lane<F>& lane, const std::array<F, kSize>& x,
+                                             std::array<Eight, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) lane.store(x[i], to[i]);
+}
+
+/// to += k x
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,
+                                              const std::array<Eight, kSize>& x, F k,
+                                              std::array<F, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) to[i] = fused(lane.load(x[i]), k, to[i]);
+}
+
+/// A pair's responses, and its motion at the start.
+/// @param turns   else its one point is the centre, where impulses do not turn
+template <bool kFriction, class F, bool kUneven>
+[[gnu::always_inline]] inline void start_frame(const Lane<F>& lane,
+                                               const LanePair<F, kUneven>& pair,
+                                               const Frame<F>& frame, const Screw<F>& motion,
+                                               bool turns, PairFrame& pair_frame,
+                                               PairFriction* friction) {
+    const F one = F{} + 1.0f;
+    const FrameScrew<F> start = frame.from_world(motion);
+    store_all(lane, start.along, pair_frame.motion);
+    if constexpr (kFriction) store_all(lane, start.across, friction->motion);
+    const Response<F, kUneven> response(pair);
+    for (std::size_t i = 0; i < 4; ++i) {
+        FrameScrew<F> unit{};
+        if (i == 0 || turns) {
+            unit.along[i] = one;
+            unit = frame.from_world(response(frame.to_world(unit)));
+        }
+        for (std::size_t j = i; j < 4; ++j)
+            lane.store(unit.along[j], pair_frame.response[packed<4>(i, j)]);
+        if constexpr (kFriction) store_all(lane, unit.across, friction->coupled[i]);
     }
+    if constexpr (kFriction)
+        for (std::size_t i = 0; i < 6; ++i) {
+            FrameScrew<F> unit{};
+            if (i < 3 || turns) {
+                unit.across[i] = one;
+                unit = frame.from_world(response(frame.to_world(unit)));
+            }
+            for (std::size_t j = i; j < 6; ++j)
+                lane.store(unit.across[j], friction->response[packed<6>(i, j)]);
+        }
+}
+
+/// The masses of rolling or twisting: of a block of three of a response.
+/// @param first   of its rows
+template <std::size_t kSize, class F, std::size_t kEntries>
+[[gnu::always_inline]] inline void start_turning(const Lane<F>& lane,
+                                                 const std::array<Eight, kEntries>& response,
+                                                 std::size_t first, std::array<Eight, 6>& mass,
+                                                 Eight& step_mass) {
+    const auto entry = [&](std::size_t i, std::size_t j) {
+        return lane.load(response[packed<kSize>(first + i, first + j)]);
+    };
     std::array<F, 6> inverse;
     F step;
-    invert<F>({K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]}, F{}, inverse, step);
-    for (std::size_t i = 0; i < 6; ++i) lane.store(inverse[i], mass[i]);
+    invert<F>({entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)}, F{},
+              inverse, step);
+    store_all(lane, inverse, mass);
     lane.store(step, step_mass);
-}
-
-/// What all points of a pair share. Its turning at the start is in world axes at first.
-template <class F, bool kUneven>
-[[gnu::always_inline]] inline void start_turning(const Lane<F>& lane,
-                                                 const LanePair<F, kUneven>& pair,
-                                                 const Frame<F>& frame, PairRolling& rolling) {
-    start_planes(lane, pair, frame, kRollingPlanes, rolling.rolling_mass, rolling.rolling_step);
-    start_planes(lane, pair, frame, kTwistingPlanes, rolling.twisting_mass, rolling.twisting_step);
-    store(lane, frame.reflected(load(lane, rolling.turning)), rolling.turning);
 }
 
 /// The angular impulse that a point starts from, in world axes at first; what the present normal
 /// impulse does not allow is left out.
-template <class F, bool kUneven>
+template <class F>
 [[gnu::always_inline]] inline void start_point_rolling(const Lane<F>& lane, const Frame<F>& frame,
                                                        F most, GeneralRolling& row,
-                                                       LanePair<F, kUneven>& pair) {
-    const LaneBivector<F> last = frame.reflected(load(lane, row.impulse));
-    const LaneBivector<F> impulse =
-        bivector_of(clamped<F>(part_of(last, kRollingPlanes), most), kRollingPlanes) +
-        bivector_of(clamped<F>(part_of(last, kTwistingPlanes), most), kTwistingPlanes);
-    store(lane, impulse, row.impulse);
-    pair.turn(frame.reflected(impulse));
+                                                       FrameScrew<F>& impulse) {
+    const FrameScrew<F> last = frame.from_world({{}, load(lane, row.impulse)});
+    const auto &n = last.along, &t = last.across;
+    const LaneVec4<F> rolling = clamped<F>(LaneVec4<F>{n[1], n[2], n[3], F{}}, most);
+    const LaneVec4<F> twisting = clamped<F>(LaneVec4<F>{t[3], t[4], t[5], F{}}, most);
+    for (std::size_t i = 0; i < 3; ++i) {
+        lane.store(rolling[i], row.impulse[i]);
+        lane.store(twisting[i], row.impulse[3 + i]);
+        impulse.along[1 + i] += rolling[i];
+        impulse.across[3 + i] += twisting[i];
+    }
+}
+
+/// A block of three of the tangents at a place, from what each does there.
+template <class F>
+[[gnu::always_inline]] inline std::array<F, 6> tangent_response(
+    const Lane<F>& lane, const PairFriction& friction, const Place<F>& at) {
+    std::array<LaneVec4<F>, 3> K;
+    for (std::size_t i = 0; i < 3; ++i) {
+        LaneVec4<F> direction{};
+        direction[i] = F{} + 1.0f;
+        std::array<F, 6> change{};
+        add_product(lane, friction.response, seen_from_centre(at, direction), change);
+        K[i] = across_at(at, change);
+    }
+    return {K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]};
 }
 
 template <bool kFriction, bool kRolling, bool kUneven, class F>
-[[gnu::always_inline]] inline void start_points(
-    const ColouredStage& stage, const Lane<F>& lane, std::uint32_t index,
-    const std::array<EightPoints, kManifoldPoints>& points, const Eight& rounding) {
+[[gnu::always_inline]] inline void start_points(const ColouredStage& stage, const Lane<F>& lane,
+                                                std::uint32_t index, const EightPairs& pairs) {
     ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     PairFrame& pair_frame = coloured.frames[index];
-    LanePair<F, kUneven> pair(lane, coloured, batch);
-    const F one = F{} + 1.0f, least = lane.load(rounding);
+    const F one = F{} + 1.0f, least = lane.load(pairs.rounding);
     // h along n - g w, which is never short.
-    LaneVec4<F> h = load(lane, points[0].normal);
+    LaneVec4<F> h = load(lane, pairs.normal);
     h[3] = h[3] > F{} ? h[3] + one : h[3] - one;
     const F scale = square_root((F{} + 2.0f) / dot(h, h));
     const Frame<F> frame(scale * h);
     store(lane, frame.h, pair_frame.h);
+    store(lane, load(lane, pairs.centre_a), pair_frame.centre_a);
+    store(lane, load(lane, pairs.centre_b), pair_frame.centre_b);
+    LanePair<F, kUneven> pair(lane, coloured, batch, pair_frame);
+    PairFriction* friction = kFriction ? &coloured.pair_friction[index] : nullptr;
+    start_frame<kFriction>(lane, pair, frame,
+                           {load(lane, pairs.velocity), load(lane, pairs.turning)},
+                           batch.rows > 1 || kRolling, pair_frame, friction);
     F arm{};
     if constexpr (kRolling) {
         PairRolling& rolling = coloured.pair_rolling[index];
-        start_turning(lane, pair, frame, rolling);
+        start_turning<4, F>(lane, pair_frame.response, 1, rolling.rolling_mass,
+                            rolling.rolling_step);
+        start_turning<6, F>(lane, friction->response, 3, rolling.twisting_mass,
+                            rolling.twisting_step);
         arm = lane.load(rolling.arm);
     }
 
+    FrameScrew<F> impulse{};
     for (std::uint32_t k = 0; k < batch.rows; ++k) {
         GeneralRow& row = coloured.rows[batch.row + k];
-        const LaneVec4<F> r_a = load(lane, points[k].r_a), r_b = load(lane, points[k].r_b);
-        store(lane, r_a, row.r_a);
-        store(lane, r_b, row.r_b);
-        const LaneVec4<F> normal_response =
-            frame.reflected(pair.response(r_a, r_b, frame.world({}, one)));
+        const LaneVec4<F> r = frame.reflected(load(lane, pairs.points[k].place));
+        const Place<F> at = {r[0], r[1], r[2]};
+        store_all(lane, at, row.at);
+        const std::array<F, 4> unit = {one, at[0], at[1], at[2]};
+        std::array<F, 4> change{};
+        add_product(lane, pair_frame.response, unit, change);
         const F normal_impulse =
-            start_normal(lane, points[k], frame.g * normal_response[3], least, row.along);
-        LaneVec4<F> tangent{};
+            start_normal(lane, pairs.points[k].along, along_at(at, change), least, row.along);
+        for (std::size_t i = 0; i < 4; ++i)
+            impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);
         if constexpr (kFriction) {
-            GeneralFriction& friction = coloured.general_friction[batch.row + k];
-            std::array<LaneVec4<F>, 3> K;
-            for (std::size_t i = 0; i < 3; ++i) {
-                LaneVec4<F> direction{};
-                direction[i] = one;
-                K[i] = frame.reflected(pair.response(r_a, r_b, frame.reflected(direction)));
-            }
+            GeneralFriction& tangents = coloured.general_friction[batch.row + k];
             std::array<F, 6> inverse;
             F slide;
-            invert<F>({K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]}, least, inverse,
-                      slide);
-            for (std::size_t i = 0; i < 6; ++i) lane.store(inverse[i], friction.mass[i]);
-            lane.store(slide, friction.slide_mass);
-            store(lane, normal_response, friction.normal_response);
-            store(lane, frame.reflected(load(lane, points[k].velocity)), friction.slip);
+            invert<F>(tangent_response(lane, *friction, at), least, inverse, slide);
+            store_all(lane, inverse, tangents.mass);
+            lane.store(slide, tangents.slide_mass);
             // The normal may have turned since the impulse was.
-            tangent = frame.reflected(load(lane, points[k].impulse));
+            LaneVec4<F> tangent = frame.reflected(load(lane, pairs.points[k].impulse));
             tangent[3] = F{};
-            tangent = clamped<F>(tangent, lane.load(pair_frame.friction) * normal_impulse);
-            store(lane, tangent, friction.impulse);
+            tangent = clamped<F>(tangent, lane.load(friction->friction) * normal_impulse);
+            store(lane, tangent, tangents.impulse);
+            add(seen_from_centre(at, tangent), impulse.across);
         }
-        pair.apply(r_a, r_b, frame.world(tangent, normal_impulse));
         if constexpr (kRolling)
             start_point_rolling(lane, frame, arm * normal_impulse,
-                                coloured.general_rolling[batch.row + k], pair);
+                                coloured.general_rolling[batch.row + k], impulse);
     }
-    pair.store();
+    pair.apply(frame.to_world(impulse));
 }
 
 /// friction_impulse() of the one-by-one solver, in the frame; solve_part() of its rolling rows.
@@ -134,29 +223,139 @@ template <class F>
                                                            const Eight& slide_mass,
                                                            const LaneVec4<F>& old,
                                                            const LaneVec4<F>& slip, F most) {
-    std::array<F, 6> mass;
-    for (std::size_t i = 0; i < 6; ++i) mass[i] = lane.load(masses[i]);
-    const LaneVec4<F> sticking = old - times(mass, slip);
-    if (simd::nowhere_above(dot(sticking, sticking), most * most)) return sticking;
+    const LaneVec4<F> sticking = old - times(load_all(lane, masses), slip);
+    // Where nothing is allowed there is nothing to find.
+    const F squared = dot(sticking, sticking), allowed = most * most;
+    const auto holds = most > F{};
+    const auto only = [&](auto where, const LaneVec4<F>& v, const LaneVec4<F>& w) {
+        return LaneVec4<F>{where ? v[0] : w[0], where ? v[1] : w[1], where ? v[2] : w[2], F{}};
+    };
+    if (simd::nowhere_above(holds ? squared : F{}, allowed)) return only(holds, sticking, {});
     const LaneVec4<F> sliding = clamped<F>(sum(old, -lane.load(slide_mass), slip), most);
-    const auto sticks = dot(sticking, sticking) <= most * most;
-    return {sticks ? sticking[0] : sliding[0], sticks ? sticking[1] : sliding[1],
-            sticks ? sticking[2] : sliding[2], F{}};
+    return only(squared <= allowed, sticking, sliding);
 }
 
-template <class F, bool kUneven>
-[[gnu::always_inline]] inline void solve_planes(const Lane<F>& lane, const Frame<F>& frame, F most,
-                                                const PairRolling& rolling, const Planes& planes,
-                                                const std::array<Eight, 6>& mass,
-                                                const Eight& step_mass, GeneralRolling& row,
-                                                LanePair<F, kUneven>& pair) {
-    const LaneBivector<F> turning =
-        load(lane, rolling.turning) + frame.reflected(pair.relative_turning());
-    const LaneVec4<F> old = part_of(load(lane, row.impulse), planes);
-    const LaneVec4<F> impulse =
-        friction_impulse<F>(lane, mass, step_mass, old, part_of(turning, planes), most);
-    for (std::size_t i = 0; i < 3; ++i) lane.store(impulse[i], row.impulse[planes[i]]);
-    pair.turn(frame.reflected(bivector_of(impulse - old, planes)));
+/// What is worked on while a batch's points are solved.
+template <class F>
+struct PairSweep {
+    ColouredIslands& coloured;
+    const Batch& batch;
+    const PairFrame& frame;
+    Sweep sweep;
+
+    /// Row of a point, in the sweep's order.
+    [[gnu::always_inline]] std::uint32_t row(std::uint32_t i) const {
+        return batch.row + (sweep.backward ? batch.rows - 1 - i : i);
+    }
+    /// The same or the other way round, unmeasured.
+    [[gnu::always_inline]] PairSweep another(bool round) const {
+        return {coloured, batch, frame, {sweep.pass, sweep.backward != round, false}};
+    }
+};
+
+/// All points' normal impulses, in the order of the sweep.
+/// @param motion    along the normal, kept up to date
+/// @param impulse   what has been changed, seen from the centre
+/// @return velocity_left(), if it is measured
+template <class F>
+[[gnu::always_inline]] inline F solve_normals(const Lane<F>& lane, const PairSweep<F>& pair,
+                                              bool soft, std::array<F, 4>& motion,
+                                              std::array<F, 4>& impulse) {
+    const F one = F{} + 1.0f;
+    F left{};
+    for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
+        GeneralRow& row = pair.coloured.rows[pair.row(i)];
+        const Place<F> at = place_of(lane, row);
+        F all;
+        const F change =
+            solve_normal(lane, row.along, along_at(at, motion), soft, pair.sweep.pass, all);
+        const std::array<F, 4> unit = {one, at[0], at[1], at[2]};
+        std::array<F, 4> response{};
+        add_product(lane, pair.frame.response, unit, response);
+        for (std::size_t k = 0; k < 4; ++k) {
+            motion[k] = fused(change, response[k], motion[k]);
+            impulse[k] = fused(change, unit[k], impulse[k]);
+        }
+        if (pair.sweep.measured) left = larger(left, velocity_left(lane, row.along, change));
+    }
+    return left;
+}
+
+/// The same of friction, across the normal.
+template <class F>
+[[gnu::always_inline]] inline F solve_friction(const Lane<F>& lane, const PairSweep<F>& pair,
+                                               const PairFriction& friction,
+                                               std::array<F, 6>& motion,
+                                               std::array<F, 6>& impulse) {
+    const F mu = lane.load(friction.friction);
+    F left{};
+    for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
+        const std::uint32_t k = pair.row(i);
+        GeneralFriction& row = pair.coloured.general_friction[k];
+        const Place<F> at = place_of(lane, pair.coloured.rows[k]);
+        const LaneVec4<F> old = load(lane, row.impulse);
+        const LaneVec4<F> all =
+            friction_impulse<F>(lane, row.mass, row.slide_mass, old, across_at(at, motion),
+                                mu * lane.load(pair.coloured.rows[k].along.impulse));
+        store(lane, all, row.impulse);
+        const LaneVec4<F> change = all - old;
+        const std::array<F, 6> seen = seen_from_centre(at, change);
+        add(seen, impulse);
+        add_product(lane, friction.response, seen, motion);
+        if (pair.sweep.measured)
+            left = larger(left, velocity_left(lane.load(row.slide_mass), change));
+    }
+    return left;
+}
+
+/// Rolling or twisting of all points.
+/// @param motion, impulse, response   along or across the normal, where three from `first` on turn
+/// @param part                        where a row's impulses begin
+template <class F, std::size_t kSize, std::size_t kEntries>
+[[gnu::always_inline]] inline void solve_turning(const Lane<F>& lane, const PairSweep<F>& pair,
+                                                 std::size_t first, F arm,
+                                                 const std::array<Eight, 6>& mass,
+                                                 const Eight& step_mass,
+                                                 const std::array<Eight, kEntries>& response,
+                                                 std::size_t part, std::array<F, kSize>& motion,
+                                                 std::array<F, kSize>& impulse) {
+    for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
+        const std::uint32_t k = pair.row(i);
+        GeneralRolling& row = pair.coloured.general_rolling[k];
+        LaneVec4<F> old{};
+        for (std::size_t j = 0; j < 3; ++j) old[j] = lane.load(row.impulse[part + j]);
+        const LaneVec4<F> slip = {motion[first], motion[first + 1], motion[first + 2], F{}};
+        const LaneVec4<F> all =
+            friction_impulse<F>(lane, mass, step_mass, old, slip,
+                                arm * lane.load(pair.coloured.rows[k].along.impulse));
+        std::array<F, kSize> change{};
+        for (std::size_t j = 0; j < 3; ++j) {
+            lane.store(all[j], row.impulse[part + j]);
+            change[first + j] = all[j] - old[j];
+        }
+        add(change, impulse);
+        add_product(lane, response, change, motion);
+    }
+}
+
+/// Rolling, after what friction and normal impulses have done, then twisting.
+template <class F>
+[[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const PairSweep<F>& pair,
+                                                 const PairRolling& rolling,
+                                                 const PairFriction& friction,
+                                                 FrameScrew<F>& motion, FrameScrew<F>& impulse) {
+    const F arm = lane.load(rolling.arm);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 6; ++j)
+            motion.along[i] =
+                fused(lane.load(friction.coupled[i][j]), impulse.across[j], motion.along[i]);
+    const std::array<F, 4> before = impulse.along;
+    solve_turning(lane, pair, 1, arm, rolling.rolling_mass, rolling.rolling_step,
+                  pair.frame.response, 0, motion.along, impulse.along);
+    for (std::size_t i = 1; i < 4; ++i)
+        add_scaled(lane, friction.coupled[i], impulse.along[i] - before[i], motion.across);
+    solve_turning(lane, pair, 3, arm, rolling.twisting_mass, rolling.twisting_step,
+                  friction.response, 3, motion.across, impulse.across);
 }
 
 template <bool kFriction, bool kRolling, bool kUneven, class F>
@@ -164,82 +363,55 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
                                              std::uint32_t index, Sweep sweep) {
     ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
+    const PairFrame& pair_frame = coloured.frames[index];
+    LanePair<F, kUneven> bodies(lane, coloured, batch, pair_frame);
+    const Frame<F> frame(load(lane, pair_frame.h));
+    const PairSweep<F> pair = {coloured, batch, pair_frame, sweep};
+    FrameScrew<F> motion = frame.from_world(bodies.motion());
+    add(load_all(lane, pair_frame.motion), motion.along);
+    FrameScrew<F> impulse{};
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
-    LanePair<F, kUneven> pair(lane, coloured, batch);
-    const Frame<F> frame(load(lane, coloured.frames[index].h));
-    const F mu = lane.load(coloured.frames[index].friction);
-    F left{};
-    for (std::uint32_t i = 0; i < batch.rows; ++i) {
-        const std::uint32_t k = batch.row + (sweep.backward ? batch.rows - 1 - i : i);
-        GeneralRow& row = coloured.rows[k];
-        const LaneVec4<F> r_a = load(lane, row.r_a), r_b = load(lane, row.r_b);
-        const LaneVec4<F> v = frame.reflected(pair.relative_velocity(r_a, r_b));
-        F normal_impulse;
-        const F change =
-            solve_normal(lane, row.along, frame.g * v[3], soft, sweep.pass, normal_impulse);
-        LaneVec4<F> tangent_change{};
-        if constexpr (kFriction) {
-            GeneralFriction& friction = coloured.general_friction[k];
-            LaneVec4<F> slip =
-                sum(v + load(lane, friction.slip), change, load(lane, friction.normal_response));
-            slip[3] = F{};  // that along the normal
-            const LaneVec4<F> old = load(lane, friction.impulse);
-            const LaneVec4<F> tangent = friction_impulse<F>(
-                lane, friction.mass, friction.slide_mass, old, slip, mu * normal_impulse);
-            store(lane, tangent, friction.impulse);
-            tangent_change = tangent - old;
-        }
-        pair.apply(r_a, r_b, frame.world(tangent_change, change));
-        if constexpr (kRolling) {
-            const PairRolling& rolling = coloured.pair_rolling[index];
-            GeneralRolling& turned = coloured.general_rolling[k];
-            const F most = lane.load(rolling.arm) * normal_impulse;
-            solve_planes(lane, frame, most, rolling, kRollingPlanes, rolling.rolling_mass,
-                         rolling.rolling_step, turned, pair);
-            solve_planes(lane, frame, most, rolling, kTwistingPlanes, rolling.twisting_mass,
-                         rolling.twisting_step, turned, pair);
-        }
-        if (!sweep.measured) continue;
-        left = larger(left, velocity_left(lane, row.along, change));
-        if constexpr (kFriction)
-            left = larger(left, velocity_left(lane.load(coloured.general_friction[k].slide_mass),
-                                              tangent_change));
+    F left = solve_normals(lane, pair, soft, motion.along, impulse.along);
+    for (int pass = 1; pass < kNormalPasses; ++pass)
+        solve_normals(lane, pair.another(pass % 2 == 1), soft, motion.along, impulse.along);
+    if constexpr (kFriction) {
+        const PairFriction& friction = coloured.pair_friction[index];
+        add(load_all(lane, friction.motion), motion.across);
+        for (std::size_t i = 0; i < 4; ++i)
+            add_scaled(lane, friction.coupled[i], impulse.along[i], motion.across);
+        left = larger(left, solve_friction(lane, pair, friction, motion.across, impulse.across));
+        if constexpr (kRolling)
+            solve_rolling(lane, pair, coloured.pair_rolling[index], friction, motion, impulse);
     }
-    pair.store();
+    bodies.apply(frame.to_world(impulse));
     return left;
 }
 
 template <bool kFriction, bool kRolling, bool kUneven>
 void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
-    const Simulation& simulation = stage.simulation;
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.general[i];
-        std::array<EightPoints, kManifoldPoints> points;
-        Eight rounding;
-        coloured.frames[i].friction = {};
+        EightPairs pairs;
+        if constexpr (kFriction) coloured.pair_friction[i].friction = {};
         if constexpr (kRolling) {
             coloured.pair_rolling[i] = {};
             std::fill_n(&coloured.general_rolling[batch.row], batch.rows, GeneralRolling{});
         }
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
-            for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
-                put_point(stage, batch.contact[k] + p, k, points[p]);
-                if constexpr (kRolling)
+            put_pair(stage, batch.contact[k], batch.points[k], k, pairs);
+            const Contact& c = stage.step.contacts[batch.contact[k]];
+            if constexpr (kFriction)
+                coloured.pair_friction[i].friction.lane[k] = float_friction(stage, c);
+            if constexpr (kRolling) {
+                coloured.pair_rolling[i].arm.lane[k] = float_rolling_arm(stage, c);
+                for (std::uint32_t p = 0; p < batch.points[k]; ++p)
                     put_angular_impulse(stage, batch.contact[k] + p, k,
                                         coloured.general_rolling[batch.row + p].impulse);
             }
-            const Contact& c = stage.step.contacts[batch.contact[k]];
-            coloured.frames[i].friction.lane[k] = float_friction(stage, c);
-            if constexpr (kRolling) {
-                coloured.pair_rolling[i].arm.lane[k] = float_rolling_arm(stage, c);
-                put_turning(stage, batch.contact[k], k, coloured.pair_rolling[i].turning);
-            }
-            rounding.lane[k] =
-                static_cast<float>(least_response(simulation, c.a, c.b) * stage.mass_unit);
         }
         for_lanes({i, i + 1}, lanes, false, [&](const auto& lane, std::uint32_t) {
-            start_points<kFriction, kRolling, kUneven>(stage, lane, i, points, rounding);
+            start_points<kFriction, kRolling, kUneven>(stage, lane, i, pairs);
         });
     }
 }
@@ -323,8 +495,11 @@ void keep_general(const ColouredStage& stage, BatchRange batches) {
                     tangent[axis] = coloured.general_friction[batch.row + p].impulse[axis].lane[k];
                 impulse.tangent = stage.mass_unit * (tangent - h.dot(tangent) * h);
                 if (!coloured.rolling) continue;
-                const Bivector turned =
-                    bivector_in_lane(coloured.general_rolling[batch.row + p].impulse, k);
+                const auto& turns = coloured.general_rolling[batch.row + p].impulse;
+                const auto entry = [&](std::size_t at) { return double{turns[at].lane[k]}; };
+                const double g = h[3] < 0 ? 1 : -1;
+                const Bivector turned = {entry(3),     entry(4),     g * entry(0),
+                                         entry(5),     g * entry(1), g * entry(2)};
                 stage.step.angular_impulses[batch.contact[k] + p] =
                     stage.mass_unit * (turned - wedge(h, velocity_at(turned, h)));
             }

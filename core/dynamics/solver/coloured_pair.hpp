@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "core/dynamics/solver/lanes.hpp"
 #include "core/dynamics/state/coloured_rows.hpp"
@@ -50,6 +51,20 @@ template <bool kUneven, class F>
     return inverse;
 }
 
+/// In world axes, of b against a at a pair's centre: a motion, or an impulse and its moment.
+template <class F>
+struct Screw {
+    LaneVec4<F> straight;
+    LaneBivector<F> turning;
+};
+
+/// The same in a pair's frame, where x, y and z are across the normal n.
+template <class F>
+struct FrameScrew {
+    std::array<F, 4> along;   ///< n; turning in xn yn zn: what normal impulses do and see
+    std::array<F, 6> across;  ///< x y z; turning in xy xz yz: what friction does and sees
+};
+
 /// PairFrame's reflection.
 template <class F>
 struct Frame {
@@ -67,9 +82,15 @@ struct Frame {
     [[gnu::always_inline]] LaneBivector<F> reflected(const LaneBivector<F>& b) const {
         return b - wedge(h, velocity_at(b, h));
     }
-    /// The impulse of these tangent and normal parts, in world axes.
-    [[gnu::always_inline]] LaneVec4<F> world(const LaneVec4<F>& tangent, F normal) const {
-        return reflected(LaneVec4<F>{tangent[0], tangent[1], tangent[2], g * normal});
+    [[gnu::always_inline]] FrameScrew<F> from_world(const Screw<F>& screw) const {
+        const LaneVec4<F> v = reflected(screw.straight);
+        const LaneBivector<F> w = reflected(screw.turning);
+        return {{g * v[3], g * w[2], g * w[4], g * w[5]}, {v[0], v[1], v[2], w[0], w[1], w[3]}};
+    }
+    [[gnu::always_inline]] Screw<F> to_world(const FrameScrew<F>& s) const {
+        const auto &n = s.along, &t = s.across;
+        return {reflected(LaneVec4<F>{t[0], t[1], t[2], g * n[0]}),
+                reflected(LaneBivector<F>{t[3], t[4], g * n[1], t[5], g * n[2], g * n[3]})};
     }
 };
 
@@ -78,55 +99,119 @@ template <class F, bool kUneven>
 class LanePair {
   public:
     [[gnu::always_inline]] LanePair(const Lane<F>& lane, ColouredIslands& coloured,
-                                    const Batch& batch)
-        : bodies_a_(lane, coloured.changes.data(), batch.a),
+                                    const Batch& batch, const PairFrame& frame)
+        : lane_(lane),
+          coloured_(coloured),
+          batch_(batch),
+          frame_(frame),
+          bodies_a_(lane, coloured.changes.data(), batch.a),
           bodies_b_(lane, coloured.changes.data(), batch.b),
           a_(bodies_a_.template load<true>()),
-          b_(bodies_b_.template load<true>()),
-          inverse_a_(inverse_of<kUneven>(lane, coloured, batch.a, a_)),
-          inverse_b_(inverse_of<kUneven>(lane, coloured, batch.b, b_)) {}
+          b_(bodies_b_.template load<true>()) {}
 
-    [[gnu::always_inline]] void store() {
+    /// How b has come to move against a.
+    [[gnu::always_inline]] Screw<F> motion() const {
+        return {(b_.velocity - a_.velocity) + (velocity_at(b_.angular_velocity, centre_b()) -
+                                               velocity_at(a_.angular_velocity, centre_a())),
+                b_.angular_velocity - a_.angular_velocity};
+    }
+    /// Gives the bodies an impulse, on b.
+    [[gnu::always_inline]] void apply(const Screw<F>& impulse) {
+        const LaneVec4<F>& p = impulse.straight;
+        a_.velocity = sum(a_.velocity, -a_.inverse_mass, p);
+        b_.velocity = sum(b_.velocity, b_.inverse_mass, p);
+        a_.angular_velocity =
+            a_.angular_velocity - inverse_a().of(impulse.turning + wedge(centre_a(), p));
+        b_.angular_velocity =
+            b_.angular_velocity + inverse_b().of(impulse.turning + wedge(centre_b(), p));
         bodies_a_.template store<true>(a_);
         bodies_b_.template store<true>(b_);
     }
-    [[gnu::always_inline]] LaneVec4<F> relative_velocity(const LaneVec4<F>& r_a,
-                                                         const LaneVec4<F>& r_b) const {
-        return (b_.velocity - a_.velocity) +
-               (velocity_at(b_.angular_velocity, r_b) - velocity_at(a_.angular_velocity, r_a));
+
+    [[gnu::always_inline]] LaneVec4<F> centre_a() const { return load(lane_, frame_.centre_a); }
+    [[gnu::always_inline]] LaneVec4<F> centre_b() const { return load(lane_, frame_.centre_b); }
+    [[gnu::always_inline]] Inverse<F, kUneven> inverse_a() const {
+        return inverse_of<kUneven>(lane_, coloured_, batch_.a, a_);
     }
-    [[gnu::always_inline]] void apply(const LaneVec4<F>& r_a, const LaneVec4<F>& r_b,
-                                      const LaneVec4<F>& impulse) {
-        a_.velocity = sum(a_.velocity, -a_.inverse_mass, impulse);
-        b_.velocity = sum(b_.velocity, b_.inverse_mass, impulse);
-        a_.angular_velocity = a_.angular_velocity - inverse_a_.of(wedge(r_a, impulse));
-        b_.angular_velocity = b_.angular_velocity + inverse_b_.of(wedge(r_b, impulse));
+    [[gnu::always_inline]] Inverse<F, kUneven> inverse_b() const {
+        return inverse_of<kUneven>(lane_, coloured_, batch_.b, b_);
     }
-    [[gnu::always_inline]] LaneBivector<F> relative_turning() const {
-        return b_.angular_velocity - a_.angular_velocity;
-    }
-    [[gnu::always_inline]] void turn(const LaneBivector<F>& impulse) {
-        a_.angular_velocity = a_.angular_velocity - inverse_a_.of(impulse);
-        b_.angular_velocity = b_.angular_velocity + inverse_b_.of(impulse);
-    }
-    /// Change of the relative turning by an angular impulse.
-    [[gnu::always_inline]] LaneBivector<F> response(const LaneBivector<F>& impulse) const {
-        return inverse_a_.of(impulse) + inverse_b_.of(impulse);
-    }
-    /// Change of the relative velocity by an impulse.
-    [[gnu::always_inline]] LaneVec4<F> response(const LaneVec4<F>& r_a, const LaneVec4<F>& r_b,
-                                                const LaneVec4<F>& impulse) const {
-        return (a_.inverse_mass + b_.inverse_mass) * impulse +
-               (velocity_at(inverse_a_.of(wedge(r_a, impulse)), r_a) +
-                velocity_at(inverse_b_.of(wedge(r_b, impulse)), r_b));
+    [[gnu::always_inline]] F inverse_mass() const { return a_.inverse_mass + b_.inverse_mass; }
+
+  private:
+    const Lane<F>& lane_;
+    const ColouredIslands& coloured_;
+    const Batch& batch_;
+    const PairFrame& frame_;
+    LaneBodies<F> bodies_a_, bodies_b_;
+    Motion<F> a_, b_;
+};
+
+/// What impulses at a pair's centre change there.
+template <class F, bool kUneven>
+class Response {
+  public:
+    [[gnu::always_inline]] explicit Response(const LanePair<F, kUneven>& pair)
+        : inverse_mass_(pair.inverse_mass()),
+          centre_a_(pair.centre_a()),
+          centre_b_(pair.centre_b()),
+          a_(pair.inverse_a()),
+          b_(pair.inverse_b()) {}
+
+    [[gnu::always_inline]] Screw<F> operator()(const Screw<F>& impulse) const {
+        const LaneVec4<F>& p = impulse.straight;
+        const LaneBivector<F> a = a_.of(impulse.turning + wedge(centre_a_, p));
+        const LaneBivector<F> b = b_.of(impulse.turning + wedge(centre_b_, p));
+        return {inverse_mass_ * p + (velocity_at(a, centre_a_) + velocity_at(b, centre_b_)), a + b};
     }
 
   private:
-    LaneBodies<F> bodies_a_, bodies_b_;
-    Motion<F> a_, b_;
-    Inverse<F, kUneven> inverse_a_, inverse_b_;
+    F inverse_mass_;
+    LaneVec4<F> centre_a_, centre_b_;
+    Inverse<F, kUneven> a_, b_;
 };
 
+/// Place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by row.
+template <std::size_t kSize>
+constexpr std::size_t packed(std::size_t i, std::size_t j) {
+    return i <= j ? i * kSize - i * (i + 1) / 2 + j : packed<kSize>(j, i);
+}
+
+template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
+          std::size_t... kColumn>
+[[gnu::always_inline]] inline F row_product(const Lane<F>& lane,
+                                            const std::array<Eight, kEntries>& symmetric,
+                                            const std::array<F, kSize>& x, F to,
+                                            std::index_sequence<kColumn...>) {
+    constexpr std::size_t kHalf = kSize / 2;
+    F other = lane.load(symmetric[packed<kSize>(kRow, 0)]) * x[0];
+    ((kColumn == 0        ? void()
+      : kColumn < kHalf   ? void(other = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]),
+                                               x[kColumn], other))
+                          : void(to = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]),
+                                            x[kColumn], to))),
+     ...);
+    return to + other;
+}
+/// to += S x, of the symmetric matrix S.
+template <std::size_t kSize, class F, std::size_t kEntries, std::size_t... kRow>
+[[gnu::always_inline]] inline void add_product(const Lane<F>& lane,
+                                               const std::array<Eight, kEntries>& symmetric,
+                                               const std::array<F, kSize>& x,
+                                               std::array<F, kSize>& to,
+                                               std::index_sequence<kRow...> rows) {
+    to = {row_product<kSize, kRow>(lane, symmetric, x, to[kRow], rows)...};
+}
+template <std::size_t kSize, class F, std::size_t kEntries>
+[[gnu::always_inline]] inline void add_product(const Lane<F>& lane,
+                                               const std::array<Eight, kEntries>& symmetric,
+                                               const std::array<F, kSize>& x,
+                                               std::array<F, kSize>& to) {
+    static_assert(kEntries == kSize * (kSize + 1) / 2);
+    add_product(lane, symmetric, x, to, std::make_index_sequence<kSize>());
+}
+
+/// A block of three, xx xy xz yy yz zz, times v.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> times(const std::array<F, 6>& symmetric,
                                                 const LaneVec4<F>& v) {

@@ -10,17 +10,38 @@
 
 namespace tesserae::lanes {
 
-/// A contact of each lane as it is put into rows: four floats each.
+/// Four floats of each lane, as they are put into rows.
+using Fours = std::array<std::array<float, 4>, kLanes>;
+
+/// A contact of each lane's round bodies.
 struct alignas(32) EightPoints {
-    using Fours = std::array<std::array<float, 4>, kLanes>;
     Fours normal = {}, r_a = {}, r_b = {};
     Fours velocity = {};  ///< relative, of the start
     Fours impulse = {};   ///< the tangent one, to start from
     Fours along = {};     ///< target, relax target, keep, normal impulse
 };
 
+/// A pair of each lane and its points, of any bodies.
+struct alignas(32) EightPairs {
+    struct Points {
+        Fours place = {};  ///< from the centre
+        Fours impulse = {}, along = {};
+    };
+    Fours normal = {};
+    Fours centre_a = {}, centre_b = {};     ///< from the bodies' centres
+    Fours velocity = {};                    ///< of b against a at the centre, at the start
+    std::array<Eight, 6> turning = {};      ///< likewise
+    Eight rounding;                         ///< see least_response()
+    std::array<Points, kManifoldPoints> points = {};
+};
+
 inline void put(const Vec4& v, std::array<float, 4>& to) {
     Eigen::Map<Eigen::Vector4f>(to.data()) = v.cast<float>();
+}
+
+inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
+    const std::array<double, 6> planes = {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw};
+    for (std::size_t i = 0; i < 6; ++i) to[i].lane[lane] = static_cast<float>(planes[i]);
 }
 
 /// Of a body that contacts do not move the offset is left out: it may be too large for a float.
@@ -54,10 +75,6 @@ inline float float_friction(const ColouredStage& stage, const Contact& c) {
         std::min(friction_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
 
-inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
-    const std::array<double, 6> planes = {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw};
-    for (std::size_t i = 0; i < 6; ++i) to[i].lane[lane] = static_cast<float>(planes[i]);
-}
 inline Bivector bivector_in_lane(const std::array<Eight, 6>& from, std::size_t lane) {
     return {from[0].lane[lane], from[1].lane[lane], from[2].lane[lane],
             from[3].lane[lane], from[4].lane[lane], from[5].lane[lane]};
@@ -68,21 +85,68 @@ inline float float_rolling_arm(const ColouredStage& stage, const Contact& c) {
     return static_cast<float>(
         std::min(rolling_arm_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
-/// How body b turns against a at the start, and the angular impulse to start from.
+/// How body b turns against a at the start.
 inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                         std::array<Eight, 6>& turning) {
     const Contact& c = stage.step.contacts[index];
     put(stage.step.angular_velocity[c.b] - stage.step.angular_velocity[c.a], lane, turning);
 }
+/// The angular impulse to start from.
 inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                                 std::array<Eight, 6>& impulse) {
     if (stage.cause == Cause::kBlow) return;
     put((1 / stage.mass_unit) * stage.step.angular_impulses[index], lane, impulse);
 }
 
+/// In the midst of a pair's points, as high along the normal as the deepest.
+inline Vec4 centre_of(const StepData& step, std::uint32_t first, std::size_t count) {
+    Vec4 sum = Vec4::Zero();
+    Contact deepest = step.contacts[first];
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        const Contact c = step.contacts[i];
+        sum += c.point;
+        if (c.separation < deepest.separation) deepest = c;
+    }
+    const Vec4 mean = sum / static_cast<double>(count);
+    return mean + deepest.normal.dot(deepest.point - mean) * deepest.normal;
+}
+
+/// As put_point(), of a pair with so many contacts from `first` on.
+inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_t count,
+                     std::size_t lane, EightPairs& pairs) {
+    const Simulation& simulation = stage.simulation;
+    const StepData& step = stage.step;
+    const Contact contact = step.contacts[first];
+    const BodyId a = contact.a, b = contact.b;
+    const Vec4 centre = centre_of(step, first, count);
+    const Vec4 r_a = centre - step.position[a], r_b = centre - step.position[b];
+    const Vec4 v = relative_velocity(step, a, r_a, b, r_b, simulation.needs.turning);
+    Bivector turning;
+    if (simulation.needs.turning) turning = step.angular_velocity[b] - step.angular_velocity[a];
+    put(contact.normal, pairs.normal[lane]);
+    if (simulation.type_of(a).movable) put(r_a, pairs.centre_a[lane]);
+    if (simulation.type_of(b).movable) put(r_b, pairs.centre_b[lane]);
+    put(v, pairs.velocity[lane]);
+    put(turning, lane, pairs.turning);
+    pairs.rounding.lane[lane] =
+        static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);
+    for (std::uint32_t p = 0; p < count; ++p) {
+        EightPairs::Points& point = pairs.points[p];
+        const Contact c = step.contacts[first + p];
+        const ContactImpulse impulse =
+            stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
+        const Vec4 place = c.point - centre;
+        const double along = c.normal.dot(v + velocity_at(turning, place));
+        const ContactTargets targets = targets_of(simulation, step, c, along, stage.cause);
+        put(place, point.place[lane]);
+        put(impulse.tangent / stage.mass_unit, point.impulse[lane]);
+        put({targets.solve, targets.relax, targets.keep, impulse.normal / stage.mass_unit},
+            point.along[lane]);
+    }
+}
+
 template <class F>
-[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
-                                               const EightPoints::Fours& fours) {
+[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane, const Fours& fours) {
     std::array<const float*, Lane<F>::count> from;
     for (std::size_t i = 0; i < from.size(); ++i) from[i] = fours[lane.first + i].data();
     LaneVec4<F> v;
@@ -90,12 +154,13 @@ template <class F>
     return v;
 }
 
+/// @param fours      target, relax target, keep, normal impulse
 /// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
 /// @return the impulse to start from
 template <class F>
-[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const EightPoints& points,
-                                             F response, F least, NormalRow& row) {
-    const LaneVec4<F> along = load(lane, points.along);
+[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const Fours& fours, F response,
+                                             F least, NormalRow& row) {
+    const LaneVec4<F> along = load(lane, fours);
     // Points that a lane does not have keep nothing.
     const F inverse = (F{} + 1.0f) / response;
     const F mass = response > least ? (along[2] > F{} ? inverse : F{}) : F{};

@@ -71,7 +71,7 @@ template <bool kFriction, bool kRolling, class F>
 
     RoundRow& row = coloured.round_rows[batch];
     store(lane, n, row.normal);
-    const F normal_impulse = start_normal(lane, points, response, F{}, row.along);
+    const F normal_impulse = start_normal(lane, points.along, response, F{}, row.along);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];

@@ -206,13 +206,15 @@ class LaneBodies {
     /// kTurns: with the angular velocity.
     template <bool kTurns>
     [[gnu::always_inline]] Motion<F> load() const {
-        Motion<F> m{};
+        Motion<F> m;
         std::array<F, 4> w, last;
         load_four<&BodyChange::velocity>(m.velocity.c);
         load_four<&BodyChange::rest>(last);
         if constexpr (kTurns) {
             load_four<&BodyChange::first_planes>(w);
             m.angular_velocity = {w[0], w[1], w[2], w[3], last[0], last[1]};
+        } else {
+            m.angular_velocity = {};
         }
         m.inverse_mass = last[2], m.inverse_inertia = last[3];
         return m;

@@ -110,6 +110,7 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     resize_anew(coloured.rows, coloured.general_rows);
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());
+    resize_anew(coloured.pair_friction, coloured.general.size());
     resize_anew(coloured.general_friction, coloured.general_rows);
     if (!coloured.rolling) return;
     resize_anew(coloured.round_rolling, coloured.round.size());

@@ -73,35 +73,44 @@ struct RoundRolling {
     std::array<Eight, 6> impulse;  ///< on b
 };
 
-/// Of all points of each pair: the frame in which their rows are. The reflection v - (h.v) h, with
-/// |h|^2 = 2, takes the normal to g w, where g = -1 if h_w >= 0, else 1, and the tangents to x, y,
-/// z.
+/// Of all points of each pair: their frame, whose centre is in the midst of them and as high along
+/// the normal as the deepest. The reflection v - (h.v) h, with |h|^2 = 2, takes the normal n to
+/// g w, where g = -1 if h_w >= 0, else 1, and the tangents to x, y, z. Along the normal are the
+/// velocity along n and the turning in xn, yn, zn: what normal impulses change and see.
 struct PairFrame {
     std::array<Eight, 4> h;
-    Eight friction;
+    std::array<Eight, 4> centre_a, centre_b;  ///< from the bodies' centres [m]
+    std::array<Eight, 4> motion;              ///< of b against a at the start, along the normal
+    std::array<Eight, 10> response;           ///< of it to impulses along the normal: symmetric
 };
-/// A contact of any two bodies.
+/// The same across the normal, which friction changes and sees: the velocity along x, y, z and the
+/// turning in xy, xz, yz.
+struct PairFriction {
+    Eight friction;
+    std::array<Eight, 6> motion;
+    std::array<Eight, 21> response;               ///< to impulses across the normal: symmetric
+    std::array<std::array<Eight, 6>, 4> coupled;  ///< to impulses along the normal
+};
+/// A contact of any two bodies. Its height above the frame's centre is left out: points of one pair
+/// that bear a load are in one plane, but for their overlaps.
 struct GeneralRow {
-    std::array<Eight, 4> r_a, r_b;  ///< from the centres to the contact point [m]
+    std::array<Eight, 3> at;  ///< from the frame's centre [m]
     NormalRow along;
 };
 struct GeneralFriction {
-    std::array<Eight, 3> normal_response;  ///< change of the slip by a unit normal impulse
-    std::array<Eight, 6> mass;             ///< xx xy xz yy yz zz
-    Eight slide_mass;                      ///< below the inverse of the largest response
-    std::array<Eight, 3> slip;             ///< of the start [m/s]
-    std::array<Eight, 3> impulse;          ///< on b
+    std::array<Eight, 6> mass;     ///< xx xy xz yy yz zz
+    Eight slide_mass;              ///< below the inverse of the largest response
+    std::array<Eight, 3> impulse;  ///< on b
 };
 
-/// Of all points of each pair, in its frame: rolling is in xw, yw, zw, twisting in xy, xz, yz.
+/// Rolling, which turns in xn, yn, zn, and twisting, in xy, xz, yz.
 struct PairRolling {
     Eight arm;                                         ///< see RollingRow
     std::array<Eight, 6> rolling_mass, twisting_mass;  ///< 11 12 13 22 23 33
     Eight rolling_step, twisting_step;                 ///< see RollingPart
-    std::array<Eight, 6> turning;                      ///< of b against a at the start [rad/s]
 };
 struct GeneralRolling {
-    std::array<Eight, 6> impulse;  ///< on b
+    std::array<Eight, 6> impulse;  ///< on b; rolling, then twisting
 };
 
 /// Batches begin <= i < end.
@@ -138,6 +147,7 @@ struct ColouredIslands {
     std::vector<RoundFriction> round_friction;      ///< of `round`
     std::vector<RoundRolling> round_rolling;        ///< likewise
     std::vector<PairFrame> frames;                  ///< of `general`
+    std::vector<PairFriction> pair_friction;        ///< likewise
     std::vector<GeneralRow> rows;                   ///< of `general`, see Batch::row
     std::vector<GeneralFriction> general_friction;  ///< likewise
     std::vector<PairRolling> pair_rolling;          ///< of `general`
