@@ -30,7 +30,26 @@ Rotor from_pair(const QuaternionPair& q) {
             0.5 * (a.s - b.s)};
 }
 
+/// Angles below this have few terms [rad]; squares above this are not rounded as tiny numbers are.
+constexpr double kSmallAngle = 2e-3, kNormalSquare = 1e-290;
+
+/// q v q~ of a v without scalar. In the one copy x y = kSign z, in the other its negative.
+template <int kSign>
+Quaternion turned(const Quaternion& q, const Quaternion& v) {
+    const double squares = q.s * q.s - (q.x * q.x + q.y * q.y + q.z * q.z);
+    const double along = 2 * (q.x * v.x + q.y * v.y + q.z * v.z), across = 2 * kSign * q.s;
+    return {0, squares * v.x + along * q.x + across * (q.y * v.z - q.z * v.y),
+            squares * v.y + along * q.y + across * (q.z * v.x - q.x * v.z),
+            squares * v.z + along * q.z + across * (q.x * v.y - q.y * v.x)};
+}
+
 Quaternion exp(const Quaternion& v) {
+    const double squared = v.x * v.x + v.y * v.y + v.z * v.z;
+    if (squared < kSmallAngle * kSmallAngle && squared > kNormalSquare) {
+        // The series' next terms are below 1e-17 of these.
+        const double k = 1 - squared / 6 * (1 - squared / 20);
+        return {1 - squared / 2 * (1 - squared / 12), k * v.x, k * v.y, k * v.z};
+    }
     const double angle = v.vector_norm();
     const double k = angle > 0 ? std::sin(angle) / angle : 1.0;
     return {std::cos(angle), k * v.x, k * v.y, k * v.z};
@@ -127,7 +146,10 @@ Rotor to_rotor(const Mat4& rotation) {
     return first_nonzero_is_negative(r) ? -r : r;
 }
 
-Bivector rotate(const Rotor& r, const Bivector& b) { return (r * Rotor{0, b, 0} * reverse(r)).b; }
+Bivector rotate(const Rotor& r, const Bivector& b) {
+    const QuaternionPair q = to_pair(r), v = to_pair({0, b, 0});
+    return from_pair({turned<1>(q.plus, v.plus), turned<-1>(q.minus, v.minus)}).b;
+}
 
 Bivector log_of_rotation(const Rotor& r) {
     // With quaternion angles a and b, s = cos((a + b)/2) cos((a - b)/2); those of -r are pi - a and

@@ -23,19 +23,27 @@ constexpr double kEnergyRounding = 1e-12, kNotJammed = 1e-6;
 }  // namespace
 
 bool has_blow(const Simulation& simulation, const StepData& step, Range contacts) {
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
-        if (blow_of(simulation, step, step.contacts[i]).fastest > 0) return true;
+    BlowFilter filter;
+    for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
+        const Contact contact = step.contacts[i];
+        if (filter.passes(simulation, step, contact) &&
+            blow_of(simulation, step, contact).fastest > 0)
+            return true;
+    }
     return false;
 }
 
 Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island) {
     Blow all;
+    BlowFilter filter;
     const Range places = step.islands.places(island);
     for (std::size_t i = places.begin; i < places.end; ++i) {
         const Contact contact = step.contacts[step.islands.contacts[i]];
-        const Blow blow = blow_of(simulation, step, contact);
-        all.fastest = std::max(all.fastest, blow.fastest);
-        all.returned = std::max(all.returned, blow.returned);
+        if (filter.passes(simulation, step, contact)) {
+            const Blow blow = blow_of(simulation, step, contact);
+            all.fastest = std::max(all.fastest, blow.fastest);
+            all.returned = std::max(all.returned, blow.returned);
+        }
         all.driven |= is_driven(simulation, contact.a) || is_driven(simulation, contact.b);
     }
     return all;

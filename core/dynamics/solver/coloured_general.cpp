@@ -23,7 +23,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> across_at(const Place<F>& at,
                                                     const std::array<F, 6>& motion) {
-    const auto &[x, y, z] = at;
+    const auto& [x, y, z] = at;
     return {fused(-y, motion[3], fused(-z, motion[4], motion[0])),
             fused(x, motion[3], fused(-z, motion[5], motion[1])),
             fused(x, motion[4], fused(y, motion[5], motion[2])), F{}};
@@ -32,7 +32,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 6> seen_from_centre(const Place<F>& at,
                                                                 const LaneVec4<F>& q) {
-    const auto &[x, y, z] = at;
+    const auto& [x, y, z] = at;
     return {q[0],
             q[1],
             q[2],
@@ -139,8 +139,9 @@ template <class F>
 
 /// A block of three of the tangents at a place, from what each does there.
 template <class F>
-[[gnu::always_inline]] inline std::array<F, 6> tangent_response(
-    const Lane<F>& lane, const PairFriction& friction, const Place<F>& at) {
+[[gnu::always_inline]] inline std::array<F, 6> tangent_response(const Lane<F>& lane,
+                                                                const PairFriction& friction,
+                                                                const Place<F>& at) {
     std::array<LaneVec4<F>, 3> K;
     for (std::size_t i = 0; i < 3; ++i) {
         LaneVec4<F> direction{};
@@ -325,9 +326,8 @@ template <class F, std::size_t kSize, std::size_t kEntries>
         LaneVec4<F> old{};
         for (std::size_t j = 0; j < 3; ++j) old[j] = lane.load(row.impulse[part + j]);
         const LaneVec4<F> slip = {motion[first], motion[first + 1], motion[first + 2], F{}};
-        const LaneVec4<F> all =
-            friction_impulse<F>(lane, mass, step_mass, old, slip,
-                                arm * lane.load(pair.coloured.rows[k].along.impulse));
+        const LaneVec4<F> all = friction_impulse<F>(
+            lane, mass, step_mass, old, slip, arm * lane.load(pair.coloured.rows[k].along.impulse));
         std::array<F, kSize> change{};
         for (std::size_t j = 0; j < 3; ++j) {
             lane.store(all[j], row.impulse[part + j]);
@@ -498,8 +498,8 @@ void keep_general(const ColouredStage& stage, BatchRange batches) {
                 const auto& turns = coloured.general_rolling[batch.row + p].impulse;
                 const auto entry = [&](std::size_t at) { return double{turns[at].lane[k]}; };
                 const double g = h[3] < 0 ? 1 : -1;
-                const Bivector turned = {entry(3),     entry(4),     g * entry(0),
-                                         entry(5),     g * entry(1), g * entry(2)};
+                const Bivector turned = {entry(3), entry(4),     g * entry(0),
+                                         entry(5), g * entry(1), g * entry(2)};
                 stage.step.angular_impulses[batch.contact[k] + p] =
                     stage.mass_unit * (turned - wedge(h, velocity_at(turned, h)));
             }

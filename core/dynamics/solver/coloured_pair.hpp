@@ -185,11 +185,11 @@ template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
                                             std::index_sequence<kColumn...>) {
     constexpr std::size_t kHalf = kSize / 2;
     F other = lane.load(symmetric[packed<kSize>(kRow, 0)]) * x[0];
-    ((kColumn == 0        ? void()
-      : kColumn < kHalf   ? void(other = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]),
-                                               x[kColumn], other))
-                          : void(to = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]),
-                                            x[kColumn], to))),
+    ((kColumn == 0 ? void()
+      : kColumn < kHalf
+          ? void(other =
+                     fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]), x[kColumn], other))
+          : void(to = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]), x[kColumn], to))),
      ...);
     return to + other;
 }

@@ -28,10 +28,10 @@ struct alignas(32) EightPairs {
         Fours impulse = {}, along = {};
     };
     Fours normal = {};
-    Fours centre_a = {}, centre_b = {};     ///< from the bodies' centres
-    Fours velocity = {};                    ///< of b against a at the centre, at the start
-    std::array<Eight, 6> turning = {};      ///< likewise
-    Eight rounding;                         ///< see least_response()
+    Fours centre_a = {}, centre_b = {};  ///< from the bodies' centres
+    Fours velocity = {};                 ///< of b against a at the centre, at the start
+    std::array<Eight, 6> turning = {};   ///< likewise
+    Eight rounding;                      ///< see least_response()
     std::array<Points, kManifoldPoints> points = {};
 };
 

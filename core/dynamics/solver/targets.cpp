@@ -122,6 +122,20 @@ bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t i
     return false;
 }
 
+void BlowFilter::see(const Simulation& simulation, const StepData& step, const Contact& c) {
+    a_ = c.a, b_ = c.b, normal_ = c.normal, centre_ = step.position[c.a];
+    slowest_ = approach_of(simulation, step, c).slowest;
+    // At r from a's centre b's velocity against a is v + w.r, and n.(w.r) = -(w.n).r.
+    Vec4 v = step.velocity[c.b] - step.velocity[c.a];
+    turning_.setZero();
+    if (simulation.needs.turning) {
+        const Bivector& w_b = step.angular_velocity[c.b];
+        v += velocity_at(w_b, centre_ - step.position[c.b]);
+        turning_ = velocity_at(w_b - step.angular_velocity[c.a], c.normal);
+    }
+    approach_ = -c.normal.dot(v);
+}
+
 Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
     const Vec4 r_a = contact.point - step.position[contact.a];
     const Vec4 r_b = contact.point - step.position[contact.b];

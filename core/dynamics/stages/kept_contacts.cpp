@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <utility>
 
 #include "core/contact/find_contacts.hpp"
@@ -97,7 +98,8 @@ class KeptContacts {
     void find(const BodyPair& pair, double margin,
               const std::shared_ptr<const KeptManifold>* last) {
         const auto [a, b] = pair;
-        const Mat4 from_a = to_matrix(step_.rotor[a]);
+        if (a != turned_) from_turned_ = to_matrix(step_.rotor[a]), turned_ = a;
+        const Mat4& from_a = from_turned_;
         const Relative now = {from_a.transpose() * (step_.position[b] - step_.position[a]),
                               reverse(step_.rotor[a]) * step_.rotor[b]};
         const TypeProperties &type_a = simulation_.type_of(a), &type_b = simulation_.type_of(b);
@@ -149,7 +151,7 @@ class KeptContacts {
 
     void report(const KeptManifold& m, const Mat4& from_a, const Relative& now, double margin) {
         // Where b was, to where it is.
-        const Mat4 turn = to_matrix(now.rotor) * to_matrix(m.rotor).transpose();
+        const Mat4 turn = to_matrix(now.rotor * reverse(m.rotor));
         const Vec4 found_normal = m.normal, found_offset = m.offset;
         const Vec4 normal = m.keeps == Keeps::kNormalOfA ? found_normal : Vec4(turn * found_normal);
         const Vec4 in_world = from_a * normal;
@@ -170,6 +172,9 @@ class KeptContacts {
     SpareManifolds& spare_;
     std::vector<Contact>& list_;
     std::vector<Contact>& found_;  ///< of one pair
+    // Pairs of a body follow each other.
+    BodyId turned_ = std::numeric_limits<BodyId>::max();  ///< no body's number
+    Mat4 from_turned_;
 };
 
 }  // namespace

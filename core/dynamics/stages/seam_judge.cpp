@@ -139,9 +139,11 @@ bool lie_on_a_rim(const S& shape, const Pose& pose, BodyId body, const ContactLi
                   double depth) {
     const Mat4 turn = to_matrix(pose.rotor).transpose();
     std::uint64_t faces = ~std::uint64_t{0};
-    for (const Contact c : contacts)
+    for (const Contact c : contacts) {
         faces &= faces_near(shape, turn * (point_below(c, body) - pose.position), depth);
-    return std::popcount(faces) > 1;  // beside the face itself
+        if (std::popcount(faces) < 2) return false;  // none but the face itself
+    }
+    return true;
 }
 
 }  // namespace
