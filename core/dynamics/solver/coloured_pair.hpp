@@ -173,8 +173,8 @@ class Response {
 
 /// Place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by row.
 template <std::size_t kSize>
-constexpr std::size_t packed(std::size_t i, std::size_t j) {
-    return i <= j ? i * kSize - i * (i + 1) / 2 + j : packed<kSize>(j, i);
+constexpr std::size_t in_triangle(std::size_t i, std::size_t j) {
+    return i <= j ? i * kSize - i * (i + 1) / 2 + j : in_triangle<kSize>(j, i);
 }
 
 template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
@@ -184,12 +184,13 @@ template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
                                             const std::array<F, kSize>& x, F to,
                                             std::index_sequence<kColumn...>) {
     constexpr std::size_t kHalf = kSize / 2;
-    F other = lane.load(symmetric[packed<kSize>(kRow, 0)]) * x[0];
+    F other = lane.load(symmetric[in_triangle<kSize>(kRow, 0)]) * x[0];
     ((kColumn == 0 ? void()
       : kColumn < kHalf
-          ? void(other =
-                     fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]), x[kColumn], other))
-          : void(to = fused(lane.load(symmetric[packed<kSize>(kRow, kColumn)]), x[kColumn], to))),
+          ? void(other = fused(lane.load(symmetric[in_triangle<kSize>(kRow, kColumn)]), x[kColumn],
+                               other))
+          : void(to = fused(lane.load(symmetric[in_triangle<kSize>(kRow, kColumn)]), x[kColumn],
+                            to))),
      ...);
     return to + other;
 }

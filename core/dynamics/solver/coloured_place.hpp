@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "core/dynamics/solver/coloured_pair.hpp"
+
+// Motions and impulses at the points of a pair that is not round, in its frame.
+namespace tesserae::lanes {
+
+/// From a pair's centre, across the normal.
+template <class F>
+using Place = std::array<F, 3>;
+
+template <class F>
+[[gnu::always_inline]] inline Place<F> place_of(const Lane<F>& lane, const GeneralRow& row) {
+    return {lane.load(row.at[0]), lane.load(row.at[1]), lane.load(row.at[2])};
+}
+/// The velocity along the normal at a place.
+template <class F>
+[[gnu::always_inline]] inline F along_at(const Place<F>& at, const std::array<F, 4>& motion) {
+    return fused(at[0], motion[1], motion[0]) + fused(at[1], motion[2], at[2] * motion[3]);
+}
+/// That across it.
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> across_at(const Place<F>& at,
+                                                    const std::array<F, 6>& motion) {
+    const auto& [x, y, z] = at;
+    return {fused(-y, motion[3], fused(-z, motion[4], motion[0])),
+            fused(x, motion[3], fused(-z, motion[5], motion[1])),
+            fused(x, motion[4], fused(y, motion[5], motion[2])), F{}};
+}
+/// An impulse across the normal at a place, seen from the centre.
+template <class F>
+[[gnu::always_inline]] inline std::array<F, 6> seen_from_centre(const Place<F>& at,
+                                                                const LaneVec4<F>& q) {
+    const auto& [x, y, z] = at;
+    return {q[0],
+            q[1],
+            q[2],
+            fused(x, q[1], -(y * q[0])),
+            fused(x, q[2], -(z * q[0])),
+            fused(y, q[2], -(z * q[1]))};
+}
+
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void add(const std::array<F, kSize>& x, std::array<F, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) to[i] += x[i];
+}
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline std::array<F, kSize> load_all(const Lane<F>& lane,
+                                                            const std::array<Eight, kSize>& from) {
+    std::array<F, kSize> x;
+    for (std::size_t i = 0; i < kSize; ++i) x[i] = lane.load(from[i]);
+    return x;
+}
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void store_all(const Lane<F>& lane, const std::array<F, kSize>& x,
+                                             std::array<Eight, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) lane.store(x[i], to[i]);
+}
+
+/// to += k x
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,
+                                              const std::array<Eight, kSize>& x, F k,
+                                              std::array<F, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) to[i] = fused(lane.load(x[i]), k, to[i]);
+}
+
+}  // namespace tesserae::lanes
