@@ -157,7 +157,7 @@ say "task $killed is killed"
 rm "$(find "$film/frames" -name '*.exr' | sort | head -n 1)"
 partial() { find "$film/frames" -name '*.partial' | grep -m 1 .; }
 wait_until 30 "an unfinished frame" partial
-find "$film/frames" -name '*.partial' -delete
+find "$film/frames" -name '*.partial' -exec rm -f {} +  # the task may have ended it meanwhile
 say "a frame and all unfinished ones are deleted"
 
 kill "$slurmd"

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/core/algebra/blades.hpp"
 
 namespace tesserae {
@@ -63,6 +65,19 @@ TEST(RotorExp, OfAnyFiniteSizeIsAUnitRotor) {
             const Rotor r = exp(size * random.bivector());
             EXPECT_LE(spin4_defect(r), 1e-15) << size;
         }
+}
+
+/// From angles that have a series to twice as large ones, which may have none.
+TEST(RotorExp, OfSmallAnglesIsTheRootOfThatOfTwiceTheAngle) {
+    RandomAlgebra random(325);
+    for (int i = 0; i < 3000; ++i) {
+        const double size = std::pow(10.0, -6 + 4.0 * i / 3000);
+        const Bivector b = in_two_planes(random, size, 0.3 * size);
+        const Rotor root = exp(b), twice = exp(2 * b);
+        EXPECT_LE(largest_difference(root * root, twice), 4e-16) << size;
+        // Their small parts, of 2.1 times the size, to four roundings of their own.
+        EXPECT_LE(norm((root * root).b - twice.b), 2e-15 * size) << size;
+    }
 }
 
 TEST(RotorExp, IsAProductOverTheInvariantPlanes) {
