@@ -34,6 +34,7 @@ inline BoxPath path_in_tesserae(const BoxMotion& motion, int steps_per_second) {
     PhysicsSettings settings;
     settings.gravity = {0, -kBoxGravity, 0, 0};
     settings.iterations = kBoxIterations;
+    settings.tolerance = 0;  // all of them, as Bullet does
     World world(bodies_of(motion), settings);
     BoxPath path;
     for (int sample = 0; sample < kBoxSamples; ++sample) {
