@@ -21,8 +21,10 @@ constexpr int kCoarsest = 240, kFinest = 7680;
 /// errors are estimates: exact as h goes to 0 if they are of first order and smooth, as Bullet's
 /// fall is, where the quotient tends to 1. Impacts fall somewhere within a step.
 constexpr double kFactor = 1.5;
-/// Rounded steps and unfinished iterations add up to this at most [m, rad].
-constexpr double kRounding = 1e-9;
+/// What rounding adds up to at most, whatever the step [m, rad]: the solver works in single
+/// precision (6e-8 of a few m/s and rad/s), and the box moves and turns for seconds at such an
+/// error.
+constexpr double kRounding = 1e-6;
 
 /// The largest distances over the samples.
 struct Distance {

@@ -124,6 +124,7 @@ std::vector<Case> all_cases() {
         "[[camera.key]]\ntime = 0\nposition = [0, 0, -40, 0]\n"
         "[[camera.key]]\ntime = 1\nposition = [0, 0, -40, 1e-9]\n";
     const std::string far = view(kFar) + block();
+    const std::string same_noise = view(kFar, "lock_noise = true\n") + block();
     return {
         {"friction", "friction", kStep, 240, heap(held + rubs), heap(held + kSmooth)},
         {"friction_and_rotors", "friction", kStep, 240, heap(kSphere + rubs), heap(smooth)},
@@ -150,7 +151,8 @@ std::vector<Case> all_cases() {
          view(kFar + "aperture = 0\nfocus_distance = 40\n") + block()},
         {"shutter", "motion blur", kFilm, 0, view(kFar + "shutter = 1e-9\n") + block() + drifting,
          view(kFar) + block() + drifting},
-        {"frames_at_rest", "moving camera", kFilm, 0, resting + far + key, resting + far},
+        {"frames_at_rest", "moving camera", kFilm, 0, resting + same_noise + key,
+         resting + same_noise},
     };
 }
 
