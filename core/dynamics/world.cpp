@@ -100,7 +100,7 @@ void World::find_contacts(Schedule& schedule) {
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
     for (bool look = true; look;) {
-        if (keeps) begin_kept(step_, kPairGrain, step_.kept, spare_manifolds_);
+        if (keeps) begin_kept(step_, kPairGrain, last, spare_manifolds_);
         step_.contacts.restart();
         contacts_.for_each_wave(
             for_each_range, step_.pairs.size(), kPairGrain,

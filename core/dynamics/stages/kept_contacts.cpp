@@ -21,12 +21,15 @@ BodyPair pair_of(const KeptManifold& m) { return {m.a, m.b}; }
 /// Goes through what was kept in the order of the pairs.
 class Search {
   public:
-    Search(const std::vector<KeptManifolds>& lists, const BodyPair& first) : lists_(lists) {
-        const auto ends_before = [&](const KeptManifolds& list) {
-            return list.empty() || pair_of(*list.back()) < first;
-        };
-        while (list_ < lists_.size() && ends_before(lists_[list_])) ++list_;
-        if (list_ == lists_.size()) return;
+    /// @param filled   those of the lists that have something
+    Search(const std::vector<KeptManifolds>& lists, const std::vector<std::uint32_t>& filled,
+           const BodyPair& first)
+        : lists_(lists) {
+        const auto place = std::partition_point(
+            filled.begin(), filled.end(),
+            [&](std::uint32_t list) { return pair_of(*lists[list].back()) < first; });
+        list_ = place == filled.end() ? lists.size() : *place;
+        if (list_ == lists.size()) return;
         const KeptManifolds& all = lists_[list_];
         place_ = static_cast<std::size_t>(
             std::partition_point(all.begin(), all.end(),
@@ -46,7 +49,7 @@ class Search {
 
   private:
     const std::vector<KeptManifolds>& lists_;
-    std::size_t list_ = 0, place_ = 0;
+    std::size_t list_, place_ = 0;
 };
 
 /// Where b is, seen from a.
@@ -206,17 +209,20 @@ std::shared_ptr<KeptManifold> SpareManifolds::take(bool has_points) {
     return std::make_shared<KeptManifold>();
 }
 
-void begin_kept(const StepData& step, std::size_t grain, std::vector<KeptManifolds>& kept,
+void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifolds>& last,
                 SpareManifolds& spare) {
-    spare.collect(kept);
-    kept.resize((step.pairs.size() + grain - 1) / grain);
+    spare.collect(step.kept);
+    step.kept.resize((step.pairs.size() + grain - 1) / grain);
+    step.filled.clear();
+    for (std::uint32_t i = 0; i < last.size(); ++i)
+        if (!last[i].empty()) step.filled.push_back(i);
 }
 
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                         const std::vector<KeptManifolds>& last, KeptManifolds& kept,
                         SpareManifolds& spare, std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
-    Search search(last, step.pairs[pairs.begin]);
+    Search search(last, step.filled, step.pairs[pairs.begin]);
     // A thread's own, from range to range: no step should have to ask for memory.
     static thread_local std::vector<Contact> found;
     KeptContacts contacts(simulation, step, kept, spare, list, found);

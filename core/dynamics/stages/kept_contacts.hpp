@@ -41,11 +41,12 @@ class SpareManifolds {
 
 /// Before find_kept_contacts() is called for all ranges of step.pairs.
 /// @param grain   ranges begin at multiples of it
-void begin_kept(const StepData& step, std::size_t grain, std::vector<KeptManifolds>& kept,
+/// @param last    what the sub-step before this one kept
+void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifolds>& last,
                 SpareManifolds& spare);
 
 /// Appends the contacts of the pairs in a range to a list, and writes what they keep.
-/// @param last   what the sub-step before this one kept
+/// @param last   as in begin_kept()
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                         const std::vector<KeptManifolds>& last, KeptManifolds& kept,
                         SpareManifolds& spare, std::vector<Contact>& list);

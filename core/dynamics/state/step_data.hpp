@@ -175,6 +175,7 @@ struct StepData {
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
     std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, or with friction
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
+    std::vector<std::uint32_t> filled;    ///< which of the lists kept before have something
 };
 
 /// Contacts and their impulses are in ascending order of this.
