@@ -55,7 +55,8 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const Vec4 r_a = c.point - step.position[c.a], r_b = c.point - step.position[c.b];
     const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
-    const ContactTargets targets = targets_of(simulation, step, c, along, stage.cause);
+    const ContactTargets targets =
+        PairTargets(simulation, step, c, stage.cause).at(c.separation, along);
     put(c.normal, points.normal[lane]);
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
@@ -118,6 +119,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const StepData& step = stage.step;
     const Contact contact = step.contacts[first];
     const BodyId a = contact.a, b = contact.b;
+    const PairTargets targets_of(simulation, step, contact, stage.cause);
+    const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     const Vec4 centre = centre_of(step, first, count);
     const Vec4 r_a = centre - step.position[a], r_b = centre - step.position[b];
     const Vec4 v = relative_velocity(step, a, r_a, b, r_b, simulation.needs.turning);
@@ -136,11 +139,11 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
         const Vec4 place = c.point - centre;
-        const double along = c.normal.dot(v + velocity_at(turning, place));
-        const ContactTargets targets = targets_of(simulation, step, c, along, stage.cause);
+        const double along = contact.normal.dot(v + velocity_at(turning, place));
+        const ContactTargets targets = targets_of.at(c.separation, along);
         put(place, point.place[lane]);
-        put(impulse.tangent / stage.mass_unit, point.impulse[lane]);
-        put({targets.solve, targets.relax, targets.keep, impulse.normal / stage.mass_unit},
+        put(per_mass_unit * impulse.tangent, point.impulse[lane]);
+        put({targets.solve, targets.relax, targets.keep, per_mass_unit * impulse.normal},
             point.along[lane]);
     }
 }

@@ -84,7 +84,8 @@ void start_row(const Simulation& simulation, const StepData& step, const Contact
                const ContactImpulse& impulse, Cause cause, ContactRow& row) {
     const Vec4 v =
         relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-    const ContactTargets targets = targets_of(simulation, step, contact, row.normal.dot(v), cause);
+    const ContactTargets targets =
+        PairTargets(simulation, step, contact, cause).at(contact.separation, row.normal.dot(v));
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 

@@ -9,14 +9,6 @@
 namespace tesserae {
 namespace {
 
-/// What decides whether a contact is a blow, and what follows.
-struct Approach {
-    double e;        ///< coefficient of restitution
-    double slowest;  ///< speed above which it is one [m/s]
-    double g;        ///< at which gravity accelerates the bodies towards each other [m/s^2]
-    double through;  ///< how deep they may overlap until the next sub-step sees it as one [m]
-};
-
 Approach approach_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
     const TypeProperties& a = simulation.type_of(contact.a);
     const TypeProperties& b = simulation.type_of(contact.b);
@@ -48,31 +40,6 @@ double slop_of(const Simulation& simulation, const Contact& contact) {
     return std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
 }
 
-/// What keeps bodies apart or takes them apart when they are s from touching.
-ContactTargets targets_of_overlap(const Simulation& simulation, double h, const Contact& contact) {
-    const double s = contact.separation;
-    const double slop = slop_of(simulation, contact);
-    ContactTargets targets;
-    if (s > -slop) {
-        targets.solve = targets.relax = s > 0 ? -s / h : 0;
-        return targets;
-    }
-    const double depth = -(s + slop);
-    // Acts on the second half of the sub-step only, so that it has to be twice as large.
-    const double fastest = kLargestPush / kSlop * slop + h * simulation.settings.gravity.norm();
-    if (simulation.settings.solver == Solver::kImpulse) {
-        targets.solve = std::min(fastest, kBiasPart / h * depth);
-        targets.relax = std::min(fastest, 2 * kBiasPart / h * depth);
-        return targets;
-    }
-    // A spring of angular frequency w, integrated implicitly.
-    constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
-    constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
-    targets.solve = std::min(fastest, 2 * kAngle / kSum / h * depth);
-    targets.keep = kStiff / (1 + kStiff);
-    return targets;
-}
-
 /// Bodies that bounce and do not hit each other by themselves: stopping them at each other's
 /// surface if another blow drives them there would lose that energy. They may overlap and bounce in
 /// the next sub-step, so that blows go through a row of bodies one after the other.
@@ -82,9 +49,8 @@ ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
     return targets;
 }
 
-ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
-                               const Approach& approach, double v0) {
-    const double s = contact.separation, h = step.h, g = approach.g;
+ContactTargets targets_of_blow(const Approach& approach, double s, double h, double v0) {
+    const double g = approach.g;
     ContactTargets targets;
     targets.solve = targets.relax = s > 0 ? -s / h : 0;
     if (approach.e == 0) return targets;
@@ -97,19 +63,49 @@ ContactTargets targets_of_blow(const StepData& step, const Contact& contact,
 
 }  // namespace
 
-ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause) {
-    if (cause == Cause::kBlow)
-        return targets_of_blow(step, contact, approach_of(simulation, step, contact),
-                               -normal_velocity);
-    if (simulation.needs.restitution) {
-        const Approach approach = approach_of(simulation, step, contact);
-        const double s = contact.separation, v1 = -normal_velocity, v0 = v1 - step.h * approach.g;
-        const bool apart = s > 0 && s > step.h * v1;
-        if (approach.e > 0 && s > -approach.through && (apart || v0 > approach.slowest))
-            return targets_of_driven(approach, s, step.h);
+PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
+                         Cause cause)
+    : cause_(cause),
+      soft_(simulation.settings.solver == Solver::kSoft),
+      bounces_(cause == Cause::kBlow || simulation.needs.restitution),
+      h_(step.h),
+      slop_(slop_of(simulation, contact)),
+      // Acts on the second half of the sub-step only, so that it has to be twice as large.
+      fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()) {
+    if (bounces_) approach_ = approach_of(simulation, step, contact);
+}
+
+ContactTargets PairTargets::at(double separation, double velocity) const {
+    const double s = separation;
+    if (cause_ == Cause::kBlow) return targets_of_blow(approach_, s, h_, -velocity);
+    if (bounces_ && approach_.e > 0) {
+        const double v1 = -velocity, v0 = v1 - h_ * approach_.g;
+        const bool apart = s > 0 && s > h_ * v1;
+        if (s > -approach_.through && (apart || v0 > approach_.slowest))
+            return targets_of_driven(approach_, s, h_);
     }
-    return targets_of_overlap(simulation, step.h, contact);
+    return of_overlap(s);
+}
+
+/// What keeps bodies apart or takes them apart.
+ContactTargets PairTargets::of_overlap(double s) const {
+    ContactTargets targets;
+    if (s > -slop_) {
+        targets.solve = targets.relax = s > 0 ? -s / h_ : 0;
+        return targets;
+    }
+    const double depth = -(s + slop_);
+    if (!soft_) {
+        targets.solve = std::min(fastest_, kBiasPart / h_ * depth);
+        targets.relax = std::min(fastest_, 2 * kBiasPart / h_ * depth);
+        return targets;
+    }
+    // A spring of angular frequency w, integrated implicitly.
+    constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
+    constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
+    targets.solve = std::min(fastest_, 2 * kAngle / kSum / h_ * depth);
+    targets.keep = kStiff / (1 + kStiff);
+    return targets;
 }
 
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
@@ -147,7 +143,8 @@ Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& 
     if (!meets || !(v0 > approach.slowest)) return {};
     Blow blow;
     blow.fastest = v0;
-    blow.returned = std::max(0.0, targets_of_blow(step, contact, approach, v0).relax) / v0;
+    blow.returned =
+        std::max(0.0, targets_of_blow(approach, contact.separation, step.h, v0).relax) / v0;
     return blow;
 }
 

@@ -19,9 +19,36 @@ struct ContactTargets {
     double solve = 0;  ///< [m/s]
     double relax = 0;  ///< [m/s]
 };
-/// @param normal_velocity   at which the bodies part, before the first impulse of the cause [m/s]
-ContactTargets targets_of(const Simulation& simulation, const StepData& step,
-                          const Contact& contact, double normal_velocity, Cause cause);
+
+/// What decides whether a contact is a blow, and what follows: the same for all of two bodies that
+/// have one normal.
+struct Approach {
+    double e = 0;        ///< coefficient of restitution
+    double slowest = 0;  ///< speed above which it is one [m/s]
+    double g = 0;        ///< at which gravity accelerates the bodies towards each other [m/s^2]
+    double through = 0;  ///< how deep they may overlap until the next sub-step sees it as one [m]
+};
+
+/// The targets of the contacts of two bodies that have one normal.
+class PairTargets {
+  public:
+    /// @param contact   any of them
+    PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
+                Cause cause);
+    /// @param velocity   along the normal, at which the bodies part before the first impulse of the
+    ///                   cause [m/s]
+    ContactTargets at(double separation, double velocity) const;
+
+  private:
+    ContactTargets of_overlap(double separation) const;
+
+    Cause cause_;
+    bool soft_, bounces_;  ///< bounces_: the approach counts
+    double h_;             ///< [s]
+    double slop_;          ///< overlap that is left alone [m]
+    double fastest_;       ///< at which bodies are moved apart, at most [m/s]
+    Approach approach_;
+};
 
 /// The velocity of body b relative to body a at the contact point [m/s].
 /// @param turning   see Needs
