@@ -15,11 +15,12 @@
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
 #   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
+#   bash bench/run.sh wall         a wall that settles, rests, is hit, beside Bullet's, ten minutes
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, twelve minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest scaling)
+all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest wall scaling)
 on_demand=(cycles large scaling-million)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
@@ -166,6 +167,13 @@ rest() {
     "$folder/bench/rest" >"$raw/rest.csv"
     head_of rest "$1"
     /usr/bin/python3 -B "$root/bench/report_rest.py" "$raw/head.txt" "$raw/rest.csv" "$results"
+}
+
+wall() {
+    { "$folder/bench/wall" 1000 3 && "$folder/bench/wall" 10000 1; } |
+        awk 'NR == 1 || !/^bodies,/' >"$raw/wall.csv"
+    head_of wall "$1"
+    cat "$raw/head.txt" "$raw/wall.csv" >"$results/wall.csv"
 }
 
 # scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: 1, 2, 4, ... threads in turn, five times each.

@@ -24,6 +24,7 @@ class PeerEngine {
     /// Deepest overlap that the engine found in the last step [m], >= 0.
     virtual double penetration() const = 0;
     virtual std::vector<Vec4> positions() const = 0;
+    virtual void set_velocity(std::size_t body, const Vec4& velocity) = 0;  ///< [m/s]
 };
 
 using MakePeer = std::unique_ptr<PeerEngine> (*)(const PeerScene&, int iterations);

@@ -65,6 +65,9 @@ class InBullet : public PeerEngine {
         }
         return positions;
     }
+    void set_velocity(std::size_t body, const Vec4& velocity) override {
+        bodies_[body]->setLinearVelocity(vector_of(velocity));
+    }
 
   private:
     template <class Visit>

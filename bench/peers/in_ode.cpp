@@ -62,6 +62,9 @@ class InOde : public PeerEngine {
         }
         return positions;
     }
+    void set_velocity(std::size_t body, const Vec4& velocity) override {
+        dBodySetLinearVel(bodies_[body], velocity.x(), velocity.y(), velocity.z());
+    }
 
   private:
     void add_body(const PeerKind& kind, const Vec4& position) {

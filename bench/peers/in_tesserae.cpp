@@ -1,4 +1,5 @@
 #include <map>
+#include <optional>
 
 #include "bench/bodies.hpp"
 #include "bench/peers/engine.hpp"
@@ -36,10 +37,12 @@ PhysicsSettings settings_of(int iterations, double tolerance) {
 class InTesserae : public PeerEngine {
   public:
     InTesserae(const PeerScene& scene, const PhysicsSettings& settings)
-        : count_(scene.size()), settings_(settings), world_(bodies_of(scene), settings_) {}
+        : count_(scene.size()), settings_(settings) {
+        world_.emplace(bodies_of(scene), settings_);
+    }
 
     void step() override {
-        threads_.run([&] { report_ = world_.step(1 / settings_.steps_per_second); });
+        threads_.run([&] { report_ = world_->step(1 / settings_.steps_per_second); });
     }
     PeerContacts contacts() override {
         StageCopy found(Stage::kBuildIslands);
@@ -49,8 +52,16 @@ class InTesserae : public PeerEngine {
     }
     double penetration() const override { return report_.penetration; }
     std::vector<Vec4> positions() const override {
-        const std::vector<Vec4>& all = world_.bodies().position;
+        const std::vector<Vec4>& all = world_->bodies().position;
         return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count_)};
+    }
+
+    void set_velocity(std::size_t body, const Vec4& velocity) override {
+        Bodies bodies = world_->bodies();
+        bodies.velocity[body] = velocity;
+        StepMemory memory = world_->memory();
+        world_.emplace(std::move(bodies), settings_);
+        world_->memory() = std::move(memory);
     }
 
     /// Of the next step, with a search for pairs, which a step of the world makes now and then
@@ -94,8 +105,8 @@ class InTesserae : public PeerEngine {
     void next_step(int iterations, StageObserver& observer) const {
         PhysicsSettings settings = settings_;
         settings.iterations = iterations;
-        parallel::ParallelWorld world(world_.bodies(), settings);
-        world.memory() = world_.memory();
+        parallel::ParallelWorld world(world_->bodies(), settings);
+        world.memory() = world_->memory();
         world.step(1 / settings.steps_per_second);
         world.forget_hints();
         world.observe(&observer);
@@ -105,7 +116,7 @@ class InTesserae : public PeerEngine {
     std::size_t count_;
     PhysicsSettings settings_;
     parallel::Threads threads_{1};  ///< outlives the world's graph
-    parallel::ParallelWorld world_;
+    std::optional<parallel::ParallelWorld> world_;
     StepReport report_;
 };
 
