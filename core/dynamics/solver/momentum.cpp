@@ -49,7 +49,10 @@ void carry_on(float& x, float& last, float part) {
 }
 auto carry_on_by(float part) {
     return [part](Eight& impulse, Eight& last) {
-        for (std::size_t i = 0; i < kLanes; ++i) carry_on(impulse.lane[i], last.lane[i], part);
+        const lanes::Lane<lanes::Float8> all;
+        const lanes::Float8 here = all.load(impulse);
+        all.store(here + part * (here - all.load(last)), impulse);
+        all.store(here, last);
     };
 }
 
