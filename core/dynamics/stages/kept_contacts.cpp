@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/contact/find_contacts.hpp"
@@ -81,13 +82,8 @@ bool is_normal_of_face(const Shape& shape, const Vec4& direction) {
 class KeptContacts {
   public:
     KeptContacts(const Simulation& simulation, const StepData& step, KeptManifolds& kept,
-                 SpareManifolds& spare, std::vector<Contact>& list, std::vector<Contact>& found)
-        : simulation_(simulation),
-          step_(step),
-          kept_(kept),
-          spare_(spare),
-          list_(list),
-          found_(found) {}
+                 SpareManifolds& spare, std::vector<Contact>& list)
+        : simulation_(simulation), step_(step), kept_(kept), spare_(spare), list_(list) {}
 
     /// Whether both are flat and whatever comes within the margin is within that of what is kept.
     bool may_keep(const BodyPair& pair, double margin) const {
@@ -125,13 +121,17 @@ class KeptContacts {
         const Shape& shape_a = simulation_.bodies.type_of(pair.a).shape;
         const Shape& shape_b = simulation_.bodies.type_of(pair.b).shape;
         const Vec4 here = Vec4::Zero();
-        found_.clear();
+        // Behind those of other pairs for a while: a list's memory is its range's, and no step should
+        // have to ask for more because another thread has come to a range.
+        const std::size_t first = list_.size();
         find_contacts(pair.a, shape_a, {here, Rotor{}}, pair.b, shape_b, {at.offset, at.rotor},
-                      margin, found_);
+                      margin, list_);
+        const std::span<const Contact> found(list_.begin() + static_cast<std::ptrdiff_t>(first),
+                                             list_.end());
         Keeps keeps = Keeps::kNothing;
         Vec4 normal = here;
-        if (!found_.empty()) {
-            normal = found_[0].normal;
+        if (!found.empty()) {
+            normal = found[0].normal;
             const Vec4 into_b = -(to_matrix(at.rotor).transpose() * normal);
             keeps = is_normal_of_face(shape_a, normal)   ? Keeps::kNormalOfA
                     : is_normal_of_face(shape_b, into_b) ? Keeps::kNormalOfB
@@ -143,12 +143,14 @@ class KeptContacts {
         m.a = pair.a, m.b = pair.b, m.offset = at.offset, m.rotor = at.rotor;
         m.keeps = keeps, m.normal = normal;
         m.points.clear();
-        if (!has_points) return manifold;
-        m.points.reserve(found_.size());
-        for (const Contact& c : found_) {
-            const Vec4 on_a = c.point - 0.5 * c.separation * normal;
-            m.points.push_back({{on_a[0], on_a[1], on_a[2], on_a[3]}, c.separation, c.feature});
+        if (has_points) {
+            m.points.reserve(found.size());
+            for (const Contact& c : found) {
+                const Vec4 on_a = c.point - 0.5 * c.separation * normal;
+                m.points.push_back({{on_a[0], on_a[1], on_a[2], on_a[3]}, c.separation, c.feature});
+            }
         }
+        list_.resize(first);
         return manifold;
     }
 
@@ -174,7 +176,6 @@ class KeptContacts {
     KeptManifolds& kept_;
     SpareManifolds& spare_;
     std::vector<Contact>& list_;
-    std::vector<Contact>& found_;  ///< of one pair
     // Pairs of a body follow each other.
     BodyId turned_ = std::numeric_limits<BodyId>::max();  ///< no body's number
     Mat4 from_turned_;
@@ -223,9 +224,7 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
                         SpareManifolds& spare, std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
     Search search(last, step.filled, step.pairs[pairs.begin]);
-    // A thread's own, from range to range: no step should have to ask for memory.
-    static thread_local std::vector<Contact> found;
-    KeptContacts contacts(simulation, step, kept, spare, list, found);
+    KeptContacts contacts(simulation, step, kept, spare, list);
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const BodyPair& pair = step.pairs[i];
         const double margin = margin_of(simulation, step, pair.a, pair.b);
