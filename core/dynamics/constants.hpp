@@ -36,6 +36,12 @@ constexpr double kTouch = 0.005;
 /// slides slowly stands on where it was; less, and what hardly moves costs as much as what does.
 constexpr double kKeptMotion = 0.001;
 
+/// Gap that rests, in the slop of the pair, usual 0.02: what is less than this apart is kept there
+/// and need not close. 0, and points that bear a load open and close whenever a wall trembles, and
+/// keep it trembling (20 to 40 sweeps a step instead of 8); more, and bodies stop visibly above
+/// what they come to rest on.
+constexpr double kRestingGap = 0.02;
+
 /// Margin of manifolds that are kept, in the slop of the pair, usual 2. More, and points that do
 /// not touch take the places of those that do; less, and only slower bodies keep theirs.
 constexpr double kKeptMargin = 2;
@@ -79,15 +85,21 @@ constexpr std::size_t kBlowWork = 10000;
 /// more while they settle, as something hits something in every step.
 constexpr double kLargeBlowResidual = 1e-3;
 
-/// Part of what a pair of sweeps changed in a large island that the next one begins with, beyond
-/// it, usual 0.9: a slow error shrinks in a tenth of the sweeps. More, and what the last sweeps
-/// leave grows; less, and a wall of 20 rows sways (0: by 13 mm/s instead of 1).
-constexpr double kMomentum = 0.9;
+/// Sweeps over a coloured island's load, at least, usual 8: a wall that has come to rest starts to
+/// lean, by too little for the residual to see it. Fewer, and it does until the residual is above
+/// the tolerance, and then takes hundreds of steps of many sweeps to come to rest again (at 2 and 4
+/// a wall of 20 rows takes 20 sweeps a step on average); more only cost more.
+constexpr int kLeastSweeps = 8;
 
-/// Friction coefficient up to which there is momentum, usual 1. More, and friction may do more to
-/// an approach than the normal impulse that it goes with: sweeps then need not come nearer to any
-/// solution, and momentum drives them away (by 100 m/s for a box of friction 100 on a plane).
-constexpr double kMostMomentumFriction = 1;
+/// How many times the last direction a new one may go on with, usual 4; more, and what it is
+/// conjugate to is no longer there, as contacts have opened or slipped: it begins anew.
+constexpr double kMostCarried = 4;
+
+/// Friction coefficient up to which directions are conjugate, usual 1. More, and friction may do
+/// more to an approach than the normal impulse that it goes with: sweeps then need not come nearer
+/// to any solution, and steps beyond them drive them away (by 100 m/s for a box of friction 100 on
+/// a plane).
+constexpr double kMostConjugateFriction = 1;
 
 /// How often a sweep goes through the normal impulses of a pair, there and back in turn, usual 2:
 /// what comes last has its way, and so a pair that is gone through one way only leans. More cost

@@ -43,16 +43,35 @@ struct PairSweep {
     }
 };
 
-/// All points' normal impulses, in the order of the sweep.
-/// @param motion    along the normal, kept up to date
-/// @param impulse   what has been changed, seen from the centre
-/// @return velocity_left(), if it is measured
+/// A pair's motion while its points are solved, and what has been changed, seen from the centre.
+/// Impulses along the normal change the motion along it at once, and that across it by see_along();
+/// the same the other way round.
 template <class F>
-[[gnu::always_inline]] inline F solve_normals(const Lane<F>& lane, const PairSweep<F>& pair,
-                                              bool soft, std::array<F, 4>& motion,
-                                              std::array<F, 4>& impulse) {
+struct PairMotion {
+    FrameScrew<F> motion, impulse{}, seen{};
+
+    [[gnu::always_inline]] void see_along(const Lane<F>& lane, const PairFriction& friction) {
+        for (std::size_t i = 0; i < 4; ++i)
+            add_scaled(lane, friction.coupled[i], impulse.along[i] - seen.along[i], motion.across);
+        seen.along = impulse.along;
+    }
+    [[gnu::always_inline]] void see_across(const Lane<F>& lane, const PairFriction& friction) {
+        for (std::size_t j = 0; j < 6; ++j) {
+            const F change = impulse.across[j] - seen.across[j];
+            for (std::size_t i = 0; i < 4; ++i)
+                motion.along[i] = fused(lane.load(friction.coupled[i][j]), change, motion.along[i]);
+        }
+        seen.across = impulse.across;
+    }
+};
+
+/// All points' normal impulses, in the order of the sweep.
+/// @param left   the largest velocity_left(), if it is measured
+template <class F>
+[[gnu::always_inline]] inline void solve_normals(const Lane<F>& lane, const PairSweep<F>& pair,
+                                                 bool soft, PairMotion<F>& of, F& left) {
     const F one = F{} + 1.0f;
-    F left{};
+    std::array<F, 4>&motion = of.motion.along, &impulse = of.impulse.along;
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         GeneralRow& row = pair.coloured.rows[pair.row(i)];
         const Place<F> at = place_of(lane, row);
@@ -68,34 +87,41 @@ template <class F>
         }
         if (pair.sweep.measured) left = larger(left, velocity_left(lane, row.along, change));
     }
-    return left;
+}
+
+/// There and back in turn, see kNormalPasses: its own adjoint.
+template <class F>
+[[gnu::always_inline]] inline void solve_normals_both_ways(const Lane<F>& lane,
+                                                           const PairSweep<F>& pair, bool soft,
+                                                           PairMotion<F>& of, F& left) {
+    solve_normals(lane, pair, soft, of, left);
+    for (int pass = 1; pass < kNormalPasses; ++pass)
+        solve_normals(lane, pair.another(pass % 2 == 1), soft, of, left);
 }
 
 /// The same of friction, across the normal.
 template <class F>
-[[gnu::always_inline]] inline F solve_friction(const Lane<F>& lane, const PairSweep<F>& pair,
-                                               const PairFriction& friction,
-                                               std::array<F, 6>& motion,
-                                               std::array<F, 6>& impulse) {
+[[gnu::always_inline]] inline void solve_friction(const Lane<F>& lane, const PairSweep<F>& pair,
+                                                  const PairFriction& friction, PairMotion<F>& of,
+                                                  F& left) {
     const F mu = lane.load(friction.friction);
-    F left{};
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
         GeneralFriction& row = pair.coloured.general_friction[k];
         const Place<F> at = place_of(lane, pair.coloured.rows[k]);
         const LaneVec4<F> old = load(lane, row.impulse);
+        const LaneVec4<F> slip = across_at(at, of.motion.across);
         const LaneVec4<F> all =
-            friction_impulse<F>(lane, row.mass, row.slide_mass, old, across_at(at, motion),
+            friction_impulse<F>(lane, row.mass, row.slide_mass, old, slip,
                                 mu * lane.load(pair.coloured.rows[k].along.impulse));
         store(lane, all, row.impulse);
         const LaneVec4<F> change = all - old;
         const std::array<F, 6> seen = seen_from_centre(at, change);
-        add(seen, impulse);
-        add_product(lane, friction.response, seen, motion);
+        add(seen, of.impulse.across);
+        add_product(lane, friction.response, seen, of.motion.across);
         if (pair.sweep.measured)
             left = larger(left, velocity_left(lane.load(row.slide_mass), change));
     }
-    return left;
 }
 
 /// Rolling or twisting of all points.
@@ -126,25 +152,58 @@ template <class F, std::size_t kSize, std::size_t kEntries>
         add_product(lane, response, change, motion);
     }
 }
-
-/// Rolling, after what friction and normal impulses have done, then twisting.
 template <class F>
 [[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const PairSweep<F>& pair,
-                                                 const PairRolling& rolling,
-                                                 const PairFriction& friction,
-                                                 FrameScrew<F>& motion, FrameScrew<F>& impulse) {
-    const F arm = lane.load(rolling.arm);
-    for (std::size_t i = 0; i < 4; ++i)
-        for (std::size_t j = 0; j < 6; ++j)
-            motion.along[i] =
-                fused(lane.load(friction.coupled[i][j]), impulse.across[j], motion.along[i]);
-    const std::array<F, 4> before = impulse.along;
-    solve_turning(lane, pair, 1, arm, rolling.rolling_mass, rolling.rolling_step,
-                  pair.frame.response, 0, motion.along, impulse.along);
-    for (std::size_t i = 1; i < 4; ++i)
-        add_scaled(lane, friction.coupled[i], impulse.along[i] - before[i], motion.across);
-    solve_turning(lane, pair, 3, arm, rolling.twisting_mass, rolling.twisting_step,
-                  friction.response, 3, motion.across, impulse.across);
+                                                 const PairRolling& rolling, PairMotion<F>& of) {
+    solve_turning(lane, pair, 1, lane.load(rolling.arm), rolling.rolling_mass, rolling.rolling_step,
+                  pair.frame.response, 0, of.motion.along, of.impulse.along);
+}
+template <class F>
+[[gnu::always_inline]] inline void solve_twisting(const Lane<F>& lane, const PairSweep<F>& pair,
+                                                  const PairRolling& rolling,
+                                                  const PairFriction& friction, PairMotion<F>& of) {
+    solve_turning(lane, pair, 3, lane.load(rolling.arm), rolling.twisting_mass,
+                  rolling.twisting_step, friction.response, 3, of.motion.across, of.impulse.across);
+}
+
+/// Normal impulses, friction, rolling, twisting, each after what those before it have done.
+template <bool kFriction, bool kRolling, class F>
+[[gnu::always_inline]] inline void solve_parts(const Lane<F>& lane, const PairSweep<F>& pair,
+                                               std::uint32_t index, bool soft, PairMotion<F>& of,
+                                               F& left) {
+    solve_normals_both_ways(lane, pair, soft, of, left);
+    if constexpr (kFriction) {
+        const PairFriction& friction = pair.coloured.pair_friction[index];
+        of.see_along(lane, friction);
+        solve_friction(lane, pair, friction, of, left);
+        if constexpr (kRolling) {
+            const PairRolling& rolling = pair.coloured.pair_rolling[index];
+            of.see_across(lane, friction);
+            solve_rolling(lane, pair, rolling, of);
+            of.see_along(lane, friction);
+            solve_twisting(lane, pair, rolling, friction, of);
+        }
+    }
+}
+/// The same from the last to the first.
+template <bool kFriction, bool kRolling, class F>
+[[gnu::always_inline]] inline void solve_parts_adjoint(const Lane<F>& lane,
+                                                       const PairSweep<F>& pair,
+                                                       std::uint32_t index, bool soft,
+                                                       PairMotion<F>& of, F& left) {
+    if constexpr (kFriction) {
+        const PairFriction& friction = pair.coloured.pair_friction[index];
+        if constexpr (kRolling) {
+            const PairRolling& rolling = pair.coloured.pair_rolling[index];
+            solve_twisting(lane, pair, rolling, friction, of);
+            of.see_across(lane, friction);
+            solve_rolling(lane, pair, rolling, of);
+            of.see_along(lane, friction);
+        }
+        solve_friction(lane, pair, friction, of, left);
+        of.see_across(lane, friction);
+    }
+    solve_normals_both_ways(lane, pair, soft, of, left);
 }
 
 template <bool kFriction, bool kRolling, bool kUneven, class F>
@@ -156,23 +215,17 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     LanePair<F, kUneven> bodies(lane, coloured, batch, pair_frame);
     const Frame<F> frame(load(lane, pair_frame.h));
     const PairSweep<F> pair = {coloured, batch, pair_frame, sweep};
-    FrameScrew<F> motion = frame.from_world(bodies.motion());
-    add(load_all(lane, pair_frame.motion), motion.along);
-    FrameScrew<F> impulse{};
+    PairMotion<F> of = {frame.from_world(bodies.motion())};
+    add(load_all(lane, pair_frame.motion), of.motion.along);
+    if constexpr (kFriction)
+        add(load_all(lane, coloured.pair_friction[index].motion), of.motion.across);
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
-    F left = solve_normals(lane, pair, soft, motion.along, impulse.along);
-    for (int pass = 1; pass < kNormalPasses; ++pass)
-        solve_normals(lane, pair.another(pass % 2 == 1), soft, motion.along, impulse.along);
-    if constexpr (kFriction) {
-        const PairFriction& friction = coloured.pair_friction[index];
-        add(load_all(lane, friction.motion), motion.across);
-        for (std::size_t i = 0; i < 4; ++i)
-            add_scaled(lane, friction.coupled[i], impulse.along[i], motion.across);
-        left = larger(left, solve_friction(lane, pair, friction, motion.across, impulse.across));
-        if constexpr (kRolling)
-            solve_rolling(lane, pair, coloured.pair_rolling[index], friction, motion, impulse);
-    }
-    bodies.apply(frame.to_world(impulse));
+    F left{};
+    if (sweep.adjoint())
+        solve_parts_adjoint<kFriction, kRolling>(lane, pair, index, soft, of, left);
+    else
+        solve_parts<kFriction, kRolling>(lane, pair, index, soft, of, left);
+    bodies.apply(frame.to_world(of.impulse));
     return left;
 }
 

@@ -19,6 +19,7 @@ struct alignas(32) EightPoints {
     Fours velocity = {};  ///< relative, of the start
     Fours impulse = {};   ///< the tangent one, to start from
     Fours along = {};     ///< target, relax target, keep, normal impulse
+    Eight start;          ///< normal velocity of the start
 };
 
 /// A pair of each lane and its points, of any bodies.
@@ -62,6 +63,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
     put(v - along * c.normal, points.velocity[lane]);
     put(impulse.tangent / stage.mass_unit, points.impulse[lane]);
+    points.start.lane[lane] = static_cast<float>(along);
     put({targets.solve - along, targets.relax - along, targets.keep,
          impulse.normal / stage.mass_unit},
         points.along[lane]);

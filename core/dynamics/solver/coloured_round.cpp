@@ -71,6 +71,7 @@ template <bool kFriction, bool kRolling, class F>
 
     RoundRow& row = coloured.round_rows[batch];
     store(lane, n, row.normal);
+    lane.store(lane.load(points.start), row.start);
     const F normal_impulse = start_normal(lane, points.along, response, F{}, row.along);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
@@ -99,6 +100,8 @@ template <bool kFriction, bool kRolling, class F>
 
 /// The normal first and then friction, as solve_row() does: the response is the same along every
 /// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
+/// Neither changes what the other sees, but rolling does what friction sees: the adjoint begins
+/// with it.
 template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline F solve_batch(const ColouredStage& stage, const Lane<F>& lane,
                                             std::uint32_t batch, Sweep sweep) {
@@ -114,6 +117,9 @@ template <bool kFriction, bool kRolling, class F>
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     F normal_impulse;
     const F change = solve_normal(lane, row.along, along, soft, sweep.pass, normal_impulse);
+    if constexpr (kRolling)
+        if (sweep.adjoint())
+            solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -129,7 +135,8 @@ template <bool kFriction, bool kRolling, class F>
         turn(n, tangent_change, arm_a, arm_b, a, b);
     }
     if constexpr (kRolling)
-        solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
+        if (!sweep.adjoint())
+            solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     apply(sum(tangent_change, change, n), a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/coloured_kernels.hpp"
-#include "core/dynamics/solver/momentum.hpp"
+#include "core/dynamics/solver/conjugate.hpp"
 
 namespace tesserae {
 
@@ -98,74 +99,148 @@ void for_all_rows(const ColouredIsland& island, const Threads& threads, const Ro
                        });
 }
 
-/// See momentum.hpp.
+/// Pairs of sweeps along conjugate directions, see conjugate.hpp.
 template <class Threads>
-class Momentum {
+class ConjugateDirections {
   public:
-    Momentum(const ColouredIsland& island, const Threads& threads)
+    ConjugateDirections(const ColouredIsland& island, const Threads& threads)
         : island_(island), threads_(threads) {
-        const ColouredStage& stage = island.stage();
-        threads.for_bodies(island.bodies(), [&](Range bodies) { begin_momentum(stage, bodies); });
-        for_all_rows(
-            island, threads, [&](BatchRange some) { begin_round_momentum(stage, some); },
-            [&](BatchRange some) { begin_general_momentum(stage, some); });
+        for_bodies([](auto... of) { begin_weights(of...); });
+        for_bodies([](auto... of) { begin_directions(of...); });
+        begin_rows();
     }
-    /// From one pair of sweeps to the next.
-    void carry_on() {
+    /// The direction after a pair of sweeps.
+    /// @return the largest change of a body's velocity by a step along it [m/s]
+    double find() {
         const ColouredStage& stage = island_.stage();
-        threads_.for_bodies(island_.bodies(),
-                            [&](Range bodies) { measure_turning_back(stage, bodies); });
-        double turned_back = 0;  // in the order of the bodies, for any number of threads
+        for_bodies([](auto... of) { weigh_step(of...); });
+        for_rows([&](BatchRange some) { weigh_round_step(stage, some); },
+                 [&](BatchRange some) { weigh_general_step(stage, some); });
+        std::array<double, 2> slopes = work();  // r.z and r.p_last
         for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
-            turned_back += stage.step.coloured.turned_back[i];
-        const float part = turned_back > 0 ? 0 : static_cast<float>(kMomentum);
-        threads_.for_bodies(island_.bodies(),
-                            [&](Range bodies) { tesserae::carry_on(stage, bodies, part); });
-        for_all_rows(
-            island_, threads_, [&](BatchRange some) { carry_on_round(stage, some, part); },
-            [&](BatchRange some) { carry_on_general(stage, some, part); });
+            for (std::size_t k = 0; k < 2; ++k) slopes[k] += stage.step.coloured.body_sums[i][k];
+        const double ratio = last_slope_ > 0 ? slopes[0] / last_slope_ : 0;
+        carried_ = ratio > 0 && ratio <= kMostCarried ? static_cast<float>(ratio) : 0;
+        for_bodies([this](auto... of) { find_direction(of..., carried_); });
+
+        double twice_energy = 0, fastest = 0;
+        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i) {
+            twice_energy += stage.step.coloured.body_sums[i][0];
+            fastest = std::max(fastest, stage.step.coloured.body_sums[i][1]);
+        }
+        // Where contacts have opened or slipped the sweeps' own step may be the better one.
+        const double length = (slopes[0] + carried_ * slopes[1]) / twice_energy;
+        holds_ = length > 1 && length < kLongest;
+        length_ = holds_ ? static_cast<float>(length) : 1;
+        slope_ = slopes[0];
+        return length_ * std::sqrt(fastest);
+    }
+    /// From there on to the next pair.
+    void go_on() {
+        const ColouredStage& stage = island_.stage();
+        last_slope_ = holds_ ? slope_ : 0;
+        if (!holds_) {
+            for_bodies([](auto... of) { go_from_end(of...); });
+            return begin_rows();
+        }
+        for_bodies([this](auto... of) { go_along(of..., length_); });
+        for_rows([&](BatchRange some) { go_along_round(stage, some, carried_, length_); },
+                 [&](BatchRange some) { go_along_general(stage, some, carried_, length_); });
     }
 
   private:
+    /// Steps are at most so long, in those of the sweeps: floats have no more digits.
+    static constexpr double kLongest = 1e6;
+
+    /// Calls work(stage, bodies).
+    template <class Work>
+    void for_bodies(const Work& work) const {
+        threads_.for_bodies(island_.bodies(), [&](Range bodies) { work(island_.stage(), bodies); });
+    }
+    template <class Round, class General>
+    void for_rows(const Round& round, const General& general) const {
+        for_all_rows(island_, threads_, round, general);
+    }
+    void begin_rows() const {
+        const ColouredStage& stage = island_.stage();
+        for_rows([&](BatchRange some) { begin_round_directions(stage, some); },
+                 [&](BatchRange some) { begin_general_directions(stage, some); });
+    }
+    /// Sums of round_work and general_work, in the order of the batches for any number of threads.
+    std::array<double, 2> work() const {
+        const ColouredIslands& coloured = island_.stage().step.coloured;
+        std::array<double, 2> sums = {};
+        const auto add = [&](const auto& list, BatchRange batches) {
+            for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+                for (std::size_t k = 0; k < 2; ++k)
+                    for (const float x : list[i][k].lane) sums[k] += x;
+        };
+        island_.for_colours(OneThread{}, LaneCount::kOne, false,
+                            [&](const ColourBatches& batches, const auto&, LaneCount) {
+                                add(coloured.round_work, batches.round);
+                                add(coloured.general_work, batches.general);
+                            });
+        return sums;
+    }
+
     const ColouredIsland& island_;
     const Threads& threads_;
+    double slope_ = 0, last_slope_ = 0;  ///< r.z
+    float carried_ = 0, length_ = 1;
+    bool holds_ = false;  ///< the direction
 };
+
+/// One iteration.
+/// @return its residual [m/s]
+template <class Threads>
+double sweep_coloured(const ColouredIsland& island, Sweep sweep, const Threads& threads,
+                      LaneCount lanes) {
+    const ColouredStage& stage = island.stage();
+    double residual = 0;
+    island.for_colours(threads, lanes, sweep.backward,
+                       [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
+                           const auto round = [&](BatchRange piece) {
+                               return sweep_round(stage, piece, sweep, at_once);
+                           };
+                           const auto general = [&](BatchRange piece) {
+                               return sweep_general(stage, piece, sweep, at_once);
+                           };
+                           double of_round = 0;
+                           if (!sweep.backward) of_round = at_work.largest(batches.round, 1, round);
+                           residual = std::max(residual, at_work.largest(batches.general,
+                                                                         kManifoldPoints, general));
+                           if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
+                           residual = std::max(residual, of_round);
+                       });
+    return residual;
+}
 
 /// @return the residual of the last iteration [m/s]
 template <class Threads>
 double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& effort,
                         const Threads& threads, LaneCount lanes) {
-    const ColouredStage& stage = island.stage();
-    // Of loads alone: in a blow contacts open and close.
-    const bool is_load =
-        stage.cause == Cause::kLoad && pass == Pass::kSolve && bears_momentum(stage.simulation);
-    std::optional<Momentum<Threads>> momentum;
-    return iterate(pass, effort, [&](Sweep sweep) {
-        if (is_load && sweep.backward) {
-            if (momentum)
-                momentum->carry_on();
-            else if (effort.sweeps > 3)
-                momentum.emplace(island, threads);
-        }
-        double residual = 0;
-        island.for_colours(
-            threads, lanes, sweep.backward,
-            [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
-                const auto round = [&](BatchRange piece) {
-                    return sweep_round(stage, piece, sweep, at_once);
-                };
-                const auto general = [&](BatchRange piece) {
-                    return sweep_general(stage, piece, sweep, at_once);
-                };
-                double of_round = 0;
-                if (!sweep.backward) of_round = at_work.largest(batches.round, 1, round);
-                residual =
-                    std::max(residual, at_work.largest(batches.general, kManifoldPoints, general));
-                if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
-                residual = std::max(residual, of_round);
-            });
-        return residual;
-    });
+    return iterate(pass, effort,
+                   [&](Sweep sweep) { return sweep_coloured(island, sweep, threads, lanes); });
+}
+
+/// A load by conjugate directions. It ends once neither a row's velocity nor, by the next step, a
+/// body's changes by more than the tolerance: what all of a wall does together no row sees.
+/// @return the residual of the last iteration [m/s]
+template <class Threads>
+double iterate_along_conjugates(const ColouredIsland& island, const Effort& effort,
+                                const Threads& threads, LaneCount lanes) {
+    std::optional<ConjugateDirections<Threads>> directions;
+    double residual = 0;
+    for (int i = 0; i < effort.sweeps; ++i) {
+        const Sweep sweep = sweep_of(Pass::kSolve, effort, i);
+        if (sweep.backward && directions) directions->go_on();
+        if (sweep.backward && !directions) directions.emplace(island, threads);
+        residual = sweep_coloured(island, sweep, threads, lanes);
+        if (sweep.backward || !directions || i + 1 == effort.sweeps) continue;
+        const double left = std::max(residual, directions->find());
+        if (i + 1 >= kLeastSweeps && sweep.measured && left <= effort.enough) break;
+    }
+    return residual;
 }
 
 /// The rows of all contacts, and the impulses that they start from.
@@ -241,8 +316,10 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
-    step.residual[island] =
-        iterate_coloured(coloured, Pass::kSolve, effort_of_load(simulation), threads, lanes);
+    const Effort effort = effort_of_load(simulation);
+    step.residual[island] = has_conjugates(simulation)
+                                ? iterate_along_conjugates(coloured, effort, threads, lanes)
+                                : iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
     if (simulation.settings.solver == Solver::kImpulse) keep_coloured(coloured, threads);
     if (step.pushed[island]) {
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });

@@ -98,10 +98,17 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     resize_anew(coloured.changes, coloured.bodies.size());
     resize_anew(coloured.last_changes, coloured.bodies.size());
-    resize_anew(coloured.first_changes, coloured.bodies.size());
-    resize_anew(coloured.turned_back, coloured.bodies.size());
-    resize_anew(coloured.last_round, coloured.round.size() * impulses_of_round(coloured));
-    resize_anew(coloured.last_general, coloured.general_rows * impulses_of_general(coloured));
+    resize_anew(coloured.direction, coloured.bodies.size());
+    for (auto* const list :
+         {&coloured.weighted_motion, &coloured.weighted_step, &coloured.weighted_direction})
+        resize_anew(*list, coloured.bodies.size());
+    resize_anew(coloured.body_sums, coloured.bodies.size());
+    for (auto* const list : {&coloured.last_round, &coloured.round_direction})
+        resize_anew(*list, coloured.round.size() * impulses_of_round(coloured));
+    for (auto* const list : {&coloured.last_general, &coloured.general_direction})
+        resize_anew(*list, coloured.general_rows * impulses_of_general(coloured));
+    resize_anew(coloured.round_work, coloured.round.size());
+    resize_anew(coloured.general_work, coloured.general.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
     if (simulation.settings.solver == Solver::kSoft)
         resize_anew(coloured.angular_velocity, coloured.bodies.size());

@@ -121,8 +121,8 @@ class KeptContacts {
         const Shape& shape_a = simulation_.bodies.type_of(pair.a).shape;
         const Shape& shape_b = simulation_.bodies.type_of(pair.b).shape;
         const Vec4 here = Vec4::Zero();
-        // Behind those of other pairs for a while: a list's memory is its range's, and no step should
-        // have to ask for more because another thread has come to a range.
+        // Behind those of other pairs for a while: a list's memory is its range's, and no step
+        // should have to ask for more because another thread has come to a range.
         const std::size_t first = list_.size();
         find_contacts(pair.a, shape_a, {here, Rotor{}}, pair.b, shape_b, {at.offset, at.rotor},
                       margin, list_);

@@ -29,6 +29,10 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
+/// A body's motion, so weighted that the square of its length is twice the energy [J over the mass
+/// unit]: velocity, and turning in the principal planes.
+using WeightedMotion = std::array<float, 10>;
+
 /// World inverse inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
 struct alignas(32) BodyInertia {
     std::array<std::array<float, 4>, 6> entry = {};  ///< three unused
@@ -57,6 +61,7 @@ struct NormalRow {
 struct RoundRow {
     std::array<Eight, 4> normal;
     NormalRow along;
+    Eight start;  ///< normal velocity of the start, which the target is less by [m/s]
 };
 struct RoundFriction {
     Eight arm_a, arm_b;  ///< from the centres to the contact point, along n and against it [m]
@@ -137,10 +142,13 @@ struct ColouredIslands {
     std::uint32_t general_rows = 0;
 
     std::vector<BodyChange> changes;  ///< of `bodies`
-    /// Of `bodies`: `changes` before the present pair of sweeps, and those that it began with.
-    std::vector<BodyChange> last_changes, first_changes;
-    std::vector<double> turned_back;                ///< of `bodies`, see momentum.hpp
-    std::vector<Eight> last_round, last_general;    ///< impulses of the rows before the pair
+    // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
+    // with, x, what the pair added, z, and the direction, p.
+    std::vector<BodyChange> last_changes, direction;
+    std::vector<WeightedMotion> weighted_motion, weighted_step, weighted_direction;
+    std::vector<std::array<double, 2>> body_sums;  ///< of `bodies`: two of a sum's items
+    std::vector<Eight> last_round, last_general, round_direction, general_direction;
+    std::vector<std::array<Eight, 2>> round_work, general_work;  ///< z, p times targets, a batch
     std::vector<BodyInertia> inertias;              ///< of `bodies`, if any turns unevenly
     std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
     std::vector<RoundRow> round_rows;               ///< of `round`

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/dynamics/solver/coloured_kernels.hpp"
+
+namespace tesserae {
+
+// Conjugate directions of the sweeps over coloured islands' loads (Hestenes and Stiefel 1952; of
+// contacts: Silcowitz, Niebe and Erleben 2010). While no contact opens and none slips, loads are
+// the solution of a linear system, the least of an energy. A pair of sweeps, backward and forward,
+// each the adjoint of the other, leads from impulses x to x + z, the gradient there, preconditioned
+// by symmetric Gauss-Seidel. The next pair begins not with x + z but with x + a p, in a direction
+// p = z + b p_last that is conjugate to the one before, and as far along it as takes the most
+// energy. So errors that spread over many bodies, as a high wall's sway, are gone in as many pairs
+// as there are kinds of them, and not in thousands of sweeps.
+//
+// With r the gradient's opposite, b = r.z/(r.z)_last and a = r.p/p.Ap. p.Ap is twice the kinetic
+// energy of what p does to the bodies; r.p is p times the rows' targets, less what p does to the
+// bodies times how they move, weighted by mass and inertia.
+
+/// Whether friction is nowhere so strong that what a sweep changes may grow: see
+/// kMostConjugateFriction.
+bool has_conjugates(const Simulation& simulation);
+
+/// The weighted motion that the load starts from.
+void begin_weights(const ColouredStage& stage, Range bodies);
+
+/// What the next pair of sweeps goes on from, without a direction.
+void begin_directions(const ColouredStage& stage, Range bodies);
+void begin_round_directions(const ColouredStage& stage, BatchRange batches);
+void begin_general_directions(const ColouredStage& stage, BatchRange batches);
+
+/// After a pair: what it changed, weighted, and r.z and r.p_last: of each body, into body_sums; of
+/// each batch, into round_work and general_work.
+void weigh_step(const ColouredStage& stage, Range bodies);
+void weigh_round_step(const ColouredStage& stage, BatchRange batches);
+void weigh_general_step(const ColouredStage& stage, BatchRange batches);
+
+/// The bodies' part of the new direction; p.Ap and the square of how fast it moves any point, of
+/// each body, into body_sums.
+/// @param carried   b
+void find_direction(const ColouredStage& stage, Range bodies, float carried);
+
+/// The beginning of the next pair.
+/// @param length   a
+void go_along(const ColouredStage& stage, Range bodies, float length);
+void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length);
+void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length);
+/// The same where the direction is given up: from where the pair ended.
+void go_from_end(const ColouredStage& stage, Range bodies);
+
+}  // namespace tesserae
