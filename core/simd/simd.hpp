@@ -24,6 +24,7 @@ using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Unsigned4 = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
 using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
+using Double2 = double __attribute__((vector_size(2 * sizeof(double))));
 using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
 /// What comparing Double4s gives.
 using Mask4 = long long __attribute__((vector_size(4 * sizeof(long long))));
@@ -115,6 +116,7 @@ template <class V>
     for (std::size_t i = 1; i < kLanes; ++i) largest = larger(largest, x[i]);
     return largest;
 }
+[[gnu::always_inline]] inline double largest_lane(Double2 v) { return v[0] < v[1] ? v[1] : v[0]; }
 [[gnu::always_inline]] inline double largest_lane(Double4 v) {
     v = larger(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
     return v[0] < v[1] ? v[1] : v[0];
