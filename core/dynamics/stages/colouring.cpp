@@ -25,13 +25,18 @@ bool is_round(const TypeProperties& type) {
 
 /// How many contacts from this one on have its bodies and its normal.
 std::uint32_t run_length(const ContactList& contacts, std::size_t begin) {
-    const Contact first = contacts[begin];
-    const std::size_t most = std::min(contacts.size() - begin, kManifoldPoints);
-    for (std::uint32_t length = 1; length < most; ++length) {
-        const Contact c = contacts[begin + length];
-        if (c.a != first.a || c.b != first.b || c.normal != first.normal) return length;
+    const std::size_t most = std::min(contacts.size(), begin + kManifoldPoints);
+    const ContactList::Run first = contacts.run(begin, most);
+    std::size_t end = first.end;
+    // The next run's normal may be the same but for the sign of a zero.
+    while (end < most) {
+        const ContactList::Run next = contacts.run(end, most);
+        if (next.a != first.a || next.b != first.b ||
+            contacts.normal(end) != contacts.normal(begin))
+            break;
+        end = next.end;
     }
-    return static_cast<std::uint32_t>(most);
+    return static_cast<std::uint32_t>(end - begin);
 }
 
 }  // namespace

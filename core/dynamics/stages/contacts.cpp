@@ -49,14 +49,23 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
     auto old = std::lower_bound(
         last.begin(), last.end(), step.contacts[contacts.begin],
         [](const KeptImpulse& i, const Contact& c) { return key_of(i) < key_of(c); });
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
-        const Contact c = step.contacts[i];
-        while (old != last.end() && key_of(*old) < key_of(c)) ++old;
-        const bool known = old != last.end() && key_of(*old) == key_of(c);
-        step.impulses[i] = known ? ContactImpulse{old->normal, old->tangent} : ContactImpulse{};
-        if (!simulation.needs.rolling) continue;
-        step.angular_impulses[i] =
-            known ? angular[static_cast<std::size_t>(old - last.begin())] : Bivector{};
+    for (std::size_t begin = contacts.begin; begin < contacts.end;) {
+        const ContactList::Run run = step.contacts.run(begin, contacts.end);
+        const BodyPair pair = {run.a, run.b};
+        const auto is_of_pair = [&] {
+            return old != last.end() && BodyPair{old->a, old->b} == pair;
+        };
+        while (old != last.end() && BodyPair{old->a, old->b} < pair) ++old;
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            const std::uint32_t feature = step.contacts.feature(i);
+            while (is_of_pair() && old->feature < feature) ++old;
+            const bool known = is_of_pair() && old->feature == feature;
+            step.impulses[i] = known ? ContactImpulse{old->normal, old->tangent} : ContactImpulse{};
+            if (!simulation.needs.rolling) continue;
+            step.angular_impulses[i] =
+                known ? angular[static_cast<std::size_t>(old - last.begin())] : Bivector{};
+        }
+        begin = run.end;
     }
 }
 

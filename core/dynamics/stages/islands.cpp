@@ -52,15 +52,12 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     // Join, the lower root above the higher one.
     resize_anew(parent_, simulation.bodies.size());
     std::iota(parent_.begin(), parent_.end(), BodyId{0});
-    resize_anew(member_, contacts.size());
-    BodyPair last = {0, 0};
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const Contact c = contacts[i];
-        member_[i] = movable(c.a) ? c.a : c.b;
-        if (BodyPair{c.a, c.b} == last) continue;
-        last = {c.a, c.b};
-        if (!movable(c.a) || !movable(c.b)) continue;
-        const BodyId p = root_of(c.a), q = root_of(c.b);
+    resize_anew(member_, contacts.run_count());
+    for (std::size_t i = 0; i < member_.size(); ++i) {
+        const ContactList::Run run = contacts.nth_run(i);
+        member_[i] = movable(run.a) ? run.a : run.b;
+        if (!movable(run.a) || !movable(run.b)) continue;
+        const BodyId p = root_of(run.a), q = root_of(run.b);
         parent_[std::max(p, q)] = std::min(p, q);
     }
     for (BodyId& member : member_) member = root_of(member);
@@ -75,15 +72,18 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
 
     Islands& islands = step.islands;
     islands.held.assign(count, 0);
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const BodyPair pair = {contacts[i].a, contacts[i].b};
-        if (!movable(pair.a) || !movable(pair.b)) islands.held[number_[member_[i]]] = 1;
+    for (std::size_t i = 0; i < member_.size(); ++i) {
+        const ContactList::Run run = contacts.nth_run(i);
+        if (!movable(run.a) || !movable(run.b)) islands.held[number_[member_[i]]] = 1;
     }
     resize_anew(islands.contacts, contacts.size());
     counting_sort(
-        contacts.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,
+        member_.size(), count, [&](std::size_t i) { return number_[member_[i]]; },
+        [&](std::size_t i) { return contacts.nth_run(i).size(); }, islands.first,
         [&](std::size_t i, std::size_t place) {
-            islands.contacts[place] = static_cast<std::uint32_t>(i);
+            const ContactList::Run run = contacts.nth_run(i);
+            std::iota(&islands.contacts[place], &islands.contacts[place] + run.size(),
+                      static_cast<std::uint32_t>(run.begin));
         });
 }
 

@@ -30,8 +30,8 @@ class IslandBuilder {
     BodyId root_of(BodyId id);
     void sort_by_island(const Simulation& simulation, StepData& step);
 
-    std::vector<BodyId> parent_;         ///< of every body; a root is its island's lowest body
-    std::vector<BodyId> member_;         ///< of every contact: a movable body of it, then its root
+    std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
+    std::vector<BodyId> member_;  ///< of every run of contacts: a movable body, then its root
     std::vector<std::uint32_t> number_;  ///< of the island whose root the body is
     Colouring colouring_;
 };

@@ -10,8 +10,6 @@ namespace {
 /// Contacts of a range at least.
 constexpr std::size_t kSeamGrain = 1024;
 
-bool same_pair(const Contact& c, const Contact& d) { return c.a == d.a && c.b == d.b; }
-
 /// Of a floor that may be made of several bodies.
 bool may_be_floor(const Simulation& simulation, BodyId id) {
     return !simulation.type_of(id).movable &&
@@ -53,15 +51,15 @@ void Seams::list_meetings(const StepData& step, Schedule& schedule, const Choose
         schedule.for_each_range(count, grain, work);
     };
     const auto list_range = [&](Range range, std::vector<Meeting>& list) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            const Contact contact = contacts[i];
-            if (i > 0 && same_pair(contacts[i - 1], contact)) continue;
-            std::size_t end = i + 1;  // in the next range perhaps
-            while (end < contacts.size() && same_pair(contact, contacts[end])) ++end;
+        // A pair is that range's in which its first contact is.
+        std::size_t i = range.begin > 0 ? contacts.end_of_pair(range.begin - 1) : 0;
+        while (i < range.end) {
+            const auto [a, b] = contacts.pair(i);
+            const std::size_t end = contacts.end_of_pair(i);
             const auto [first, last] = std::pair(std::uint32_t(i), std::uint32_t(end));
-            const BodyId a = contact.a, b = contact.b;
             for (Meeting m : {Meeting{a, b, first, last}, Meeting{b, a, first, last}})
                 if (choose(m)) list.push_back(m);
+            i = end;
         }
     };
     lists_.collect(for_each_range, contacts.size(), kSeamGrain, list_range, meetings_);

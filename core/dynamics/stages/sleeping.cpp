@@ -52,8 +52,12 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
 }  // namespace
 
 bool touches_sleeper(const StepData& step, Range contacts) {
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
-        if (is_asleep(step, step.contacts[i].a) || is_asleep(step, step.contacts[i].b)) return true;
+    if (step.asleep.empty()) return false;
+    for (std::size_t i = contacts.begin; i < contacts.end;) {
+        const ContactList::Run run = step.contacts.run(i, contacts.end);
+        if (is_asleep(step, run.a) || is_asleep(step, run.b)) return true;
+        i = run.end;
+    }
     return false;
 }
 

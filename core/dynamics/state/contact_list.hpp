@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/contact/contact.hpp"
@@ -36,6 +38,14 @@ class ContactList {
         Iterator end() const { return last; }
     };
 
+    /// Contacts begin <= i < end, which have their bodies and their normal in common.
+    struct Run {
+        std::size_t begin, end;
+        BodyId a, b;
+
+        std::size_t size() const { return end - begin; }
+    };
+
     ContactList() = default;
     explicit ContactList(std::span<const Contact> contacts) {
         for (const Contact& contact : contacts) push_back(contact);
@@ -48,6 +58,31 @@ class ContactList {
         const Shared& shared = shared_[point.shared];
         return {shared.normal, point.place, point.separation, shared.a, shared.b, point.feature};
     }
+    /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
+    /// little of each point go from run to run.
+    Run run(std::size_t i, std::size_t limit) const {
+        const std::uint32_t place = points_[i].shared;
+        const Shared& shared = shared_[place];
+        const std::size_t end = place + 1 < shared_size_ ? shared_[place + 1].first : size_;
+        return {i, std::min(end, limit), shared.a, shared.b};
+    }
+    /// All runs, and one of them by its number.
+    std::size_t run_count() const { return shared_size_; }
+    Run nth_run(std::size_t n) const { return run(shared_[n].first, size_); }
+    /// Behind the last contact of the pair that contact i is of.
+    std::size_t end_of_pair(std::size_t i) const {
+        std::size_t end = i;
+        do end = run(end, size_).end;
+        while (end < size_ && pair(end) == pair(i));
+        return end;
+    }
+    std::pair<BodyId, BodyId> pair(std::size_t i) const {
+        const Shared& shared = shared_[points_[i].shared];
+        return {shared.a, shared.b};
+    }
+    const PackedVec4& normal(std::size_t i) const { return shared_[points_[i].shared].normal; }
+    double separation(std::size_t i) const { return points_[i].separation; }
+    std::uint32_t feature(std::size_t i) const { return points_[i].feature; }
     Part part(std::size_t begin, std::size_t end) const { return {{*this, begin}, {*this, end}}; }
     Iterator begin() const { return {*this, 0}; }
     Iterator end() const { return {*this, size_}; }
@@ -63,7 +98,7 @@ class ContactList {
         const bool is_shared = size_ > 0 && share(contact, (*this)[size_ - 1]);
         if (!is_shared) {
             if (shared_.size() == shared_size_) shared_.emplace_back();
-            shared_[shared_size_++] = {contact.normal, contact.a, contact.b};
+            shared_[shared_size_++] = {contact.normal, contact.a, contact.b, place_of(size_)};
         }
         write(contact, size_++, shared_size_ - 1);
     }
@@ -100,12 +135,14 @@ class ContactList {
     struct Shared {
         PackedVec4 normal;
         BodyId a, b;
+        std::uint32_t first;  ///< of the points
     };
     /// Places of a list's first contact and of what it shares.
     struct Start {
         std::size_t point, shared;
     };
 
+    static std::uint32_t place_of(std::size_t i) { return static_cast<std::uint32_t>(i); }
     static bool share(const Contact& c, const Contact& d) {
         return c.a == d.a && c.b == d.b &&
                std::memcmp(c.normal.data(), d.normal.data(), 4 * sizeof(double)) == 0;
@@ -121,11 +158,11 @@ class ContactList {
             const bool is_shared = i > 0 && share(list[i - 1], c);
             if (i > 0 && !is_shared) ++start.shared;
             write(c, start.point + i, start.shared);
-            if (!is_shared) shared_[start.shared] = {c.normal, c.a, c.b};
+            if (!is_shared) shared_[start.shared] = {c.normal, c.a, c.b, place_of(start.point + i)};
         }
     }
     void write(const Contact& c, std::size_t place, std::size_t shared) {
-        points_[place] = {c.point, c.separation, c.feature, static_cast<std::uint32_t>(shared)};
+        points_[place] = {c.point, c.separation, c.feature, place_of(shared)};
     }
 
     // Those that are used come first. What lies behind them stays, to be written over.
