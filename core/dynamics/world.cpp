@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/dynamics/solver/blow.hpp"
@@ -96,6 +97,11 @@ void World::find_contacts(Schedule& schedule) {
         schedule.for_each_range(count, grain, work);
     };
     const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
+    const auto kept_of = [&](Range pairs) {
+        const std::size_t first = pairs.begin / kPairGrain;
+        const std::size_t end = (pairs.end + kPairGrain - 1) / kPairGrain;
+        return std::span(step_.kept).subspan(first, end - first);
+    };
     const bool keeps = simulation_.needs.manifolds;
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
@@ -106,9 +112,8 @@ void World::find_contacts(Schedule& schedule) {
             for_each_range, step_.pairs.size(), kPairGrain,
             [&](Range pairs, std::vector<Contact>& list) {
                 if (keeps)
-                    find_kept_contacts(simulation_, step_, pairs, last,
-                                       step_.kept[pairs.begin / kPairGrain], spare_manifolds_,
-                                       list);
+                    find_kept_contacts(simulation_, step_, pairs, last, kept_of(pairs),
+                                       spare_manifolds_, list);
                 else
                     tesserae::find_contacts(simulation_, step_, pairs, list);
             },

@@ -104,18 +104,32 @@ class KeptContacts {
         const TypeProperties &type_a = simulation_.type_of(a), &type_b = simulation_.type_of(b);
         const double slop = std::min(type_a.slop, type_b.slop);
         if (!last || !(way(**last, now, type_b.radius) <= kKeptMotion / kSlop * slop))
-            kept_.push_back(found_at(pair, now, kKeptMargin * slop));
+            keep(found_at(pair, now, kKeptMargin * slop));
         else if ((*last)->keeps == Keeps::kUnknown)
-            kept_.push_back(found_at(pair, {(*last)->offset, (*last)->rotor}, kKeptMargin * slop));
+            keep(found_at(pair, {(*last)->offset, (*last)->rotor}, kKeptMargin * slop));
         else
-            kept_.push_back(*last);
-        const KeptManifold& m = *kept_.back();
+            keep(*last);
+        const KeptManifold& m = *kept_[count_ - 1];
         if (m.keeps == Keeps::kNoFace)
             return find_contacts_of(simulation_, step_, pair, margin, list_);
         if (!m.points.empty()) report(m, from_a, now, margin);
     }
 
+    /// Takes what the list still had away behind the last one that is kept.
+    void end() { kept_.resize(count_); }
+
   private:
+    /// Most are in the list at this place already: see SpareManifolds::collect(). To count who has
+    /// one more and one less costs as much as to move it.
+    template <class Manifold>
+    void keep(Manifold&& manifold) {
+        if (count_ == kept_.size())
+            kept_.push_back(std::forward<Manifold>(manifold));
+        else if (kept_[count_] != manifold)
+            kept_[count_] = std::forward<Manifold>(manifold);
+        ++count_;
+    }
+
     std::shared_ptr<const KeptManifold> found_at(const BodyPair& pair, const Relative& at,
                                                  double margin) {
         const Shape& shape_a = simulation_.bodies.type_of(pair.a).shape;
@@ -176,6 +190,7 @@ class KeptContacts {
     KeptManifolds& kept_;
     SpareManifolds& spare_;
     std::vector<Contact>& list_;
+    std::size_t count_ = 0;  ///< of kept_, so far
     // Pairs of a body follow each other.
     BodyId turned_ = std::numeric_limits<BodyId>::max();  ///< no body's number
     Mat4 from_turned_;
@@ -183,7 +198,8 @@ class KeptContacts {
 
 }  // namespace
 
-void SpareManifolds::collect(std::vector<KeptManifolds>& lists) {
+void SpareManifolds::collect(std::vector<KeptManifolds>& lists,
+                             const std::vector<KeptManifolds>& last) {
     for (Spares& spares : spares_) {
         spares.list.resize(spares.list.size() - std::min(spares.list.size(), spares.taken));
         spares.taken = 0;
@@ -192,14 +208,16 @@ void SpareManifolds::collect(std::vector<KeptManifolds>& lists) {
     std::size_t count = 0;
     for (const KeptManifolds& list : lists) count += list.size();
     const std::size_t most = std::max(kFewSpares, count / kSpareManifolds);
-    for (KeptManifolds& list : lists) {
-        for (std::shared_ptr<const KeptManifold>& manifold : list) {
-            if (manifold.use_count() > 1) continue;
-            Spares& spares = spares_[manifold->points.capacity() > 0 ? 1 : 0];
-            if (spares.list.size() < most)
-                spares.list.push_back(std::const_pointer_cast<KeptManifold>(std::move(manifold)));
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const std::size_t in_last = i < last.size() ? last[i].size() : 0;
+        for (std::size_t k = 0; k < lists[i].size(); ++k) {
+            std::shared_ptr<const KeptManifold>& manifold = lists[i][k];
+            if (k < in_last && manifold == last[i][k]) continue;
+            auto own = std::const_pointer_cast<KeptManifold>(std::move(manifold));
+            if (!own || own.use_count() > 1) continue;
+            Spares& spares = spares_[own->points.capacity() > 0 ? 1 : 0];
+            if (spares.list.size() < most) spares.list.push_back(std::move(own));
         }
-        list.clear();
     }
 }
 
@@ -212,7 +230,7 @@ std::shared_ptr<KeptManifold> SpareManifolds::take(bool has_points) {
 
 void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifolds>& last,
                 SpareManifolds& spare) {
-    spare.collect(step.kept);
+    spare.collect(step.kept, last);
     step.kept.resize((step.pairs.size() + grain - 1) / grain);
     step.filled.clear();
     for (std::uint32_t i = 0; i < last.size(); ++i)
@@ -220,9 +238,11 @@ void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifol
 }
 
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
-                        const std::vector<KeptManifolds>& last, KeptManifolds& kept,
+                        const std::vector<KeptManifolds>& last, std::span<KeptManifolds> lists,
                         SpareManifolds& spare, std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
+    for (KeptManifolds& unused : lists.subspan(1)) unused.clear();
+    KeptManifolds& kept = lists.front();
     Search search(last, step.filled, step.pairs[pairs.begin]);
     KeptContacts contacts(simulation, step, kept, spare, list);
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
@@ -234,6 +254,7 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
         }
         contacts.find(pair, margin, search.find(pair));
     }
+    contacts.end();
 }
 
 }  // namespace tesserae

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/dynamics/state/step_data.hpp"
@@ -25,8 +26,9 @@ class SpareManifolds {
     SpareManifolds(const SpareManifolds&) {}
     SpareManifolds& operator=(const SpareManifolds&) { return *this; }
 
-    /// Empties the lists, and takes what nobody else has; most of many is given back.
-    void collect(std::vector<KeptManifolds>& lists);
+    /// Takes what nobody else has out of lists that are written anew; most of many is given back.
+    /// What `last` has at the same place stays: most of it will be kept there again.
+    void collect(std::vector<KeptManifolds>& lists, const std::vector<KeptManifolds>& last);
     /// One that is spare or new. Any number of threads may call it.
     /// @param has_points   it should have memory for points
     std::shared_ptr<KeptManifold> take(bool has_points);
@@ -46,9 +48,11 @@ void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifol
                 SpareManifolds& spare);
 
 /// Appends the contacts of the pairs in a range to a list, and writes what they keep.
-/// @param last   as in begin_kept()
+/// @param last    as in begin_kept()
+/// @param lists   those of step.kept from the range's on, up to the next range's: the first is
+///                filled
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
-                        const std::vector<KeptManifolds>& last, KeptManifolds& kept,
+                        const std::vector<KeptManifolds>& last, std::span<KeptManifolds> lists,
                         SpareManifolds& spare, std::vector<Contact>& list);
 
 }  // namespace tesserae

@@ -32,8 +32,7 @@ class PairAtRest {
     std::vector<Contact> find_kept() {
         std::vector<Contact> list;
         begin_kept(step_, 1, step_.last_kept, spare_);
-        find_kept_contacts(simulation_, step_, {0, 1}, step_.last_kept, step_.kept[0], spare_,
-                           list);
+        find_kept_contacts(simulation_, step_, {0, 1}, step_.last_kept, step_.kept, spare_, list);
         step_.last_kept = step_.kept;
         return list;
     }
