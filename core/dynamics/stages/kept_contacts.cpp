@@ -1,6 +1,7 @@
 #include "core/dynamics/stages/kept_contacts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <span>
@@ -8,6 +9,7 @@
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/seam_judge.hpp"
 
 namespace tesserae {
 namespace {
@@ -156,16 +158,35 @@ class KeptContacts {
         KeptManifold& m = *manifold;
         m.a = pair.a, m.b = pair.b, m.offset = at.offset, m.rotor = at.rotor;
         m.keeps = keeps, m.normal = normal;
-        m.points.clear();
+        m.points.clear(), m.no_seam = 0;
         if (has_points) {
             m.points.reserve(found.size());
             for (const Contact& c : found) {
                 const Vec4 on_a = c.point - 0.5 * c.separation * normal;
                 m.points.push_back({{on_a[0], on_a[1], on_a[2], on_a[3]}, c.separation, c.feature});
             }
+            m.no_seam = no_seam_of(m);
         }
         list_.resize(first);
         return manifold;
+    }
+
+    /// See Contact.
+    std::uint8_t no_seam_of(const KeptManifold& m) const {
+        const std::size_t count = m.points.size();
+        if (count > kManifoldPoints) return 0;
+        const Mat4 to_b = to_matrix(m.rotor).transpose();
+        const Vec4 normal = m.normal, offset = m.offset;
+        std::array<Vec4, kManifoldPoints> in_a, in_b;
+        for (std::size_t i = 0; i < count; ++i) {
+            in_a[i] = Vec4(m.points[i].on_a.data());
+            in_b[i] = to_b * (in_a[i] + m.points[i].separation * normal - offset);
+        }
+        const bool of_a = is_never_seam(simulation_.bodies.type_of(m.a).shape, normal,
+                                        {in_a.data(), count}, simulation_.type_of(m.b));
+        const bool of_b = is_never_seam(simulation_.bodies.type_of(m.b).shape, -(to_b * normal),
+                                        {in_b.data(), count}, simulation_.type_of(m.a));
+        return static_cast<std::uint8_t>((of_a ? 1 : 0) | (of_b ? 2 : 0));
     }
 
     void report(const KeptManifold& m, const Mat4& from_a, const Relative& now, double margin) {
@@ -181,7 +202,8 @@ class KeptContacts {
             const double separation = normal.dot(on_b - on_a);
             if (separation <= margin)
                 list_.push_back({in_world, step_.position[m.a] + from_a * (0.5 * (on_a + on_b)),
-                                 separation, m.a, m.b, p.feature});
+                                 separation, m.a, m.b, p.feature, m.no_seam,
+                                 static_cast<std::uint8_t>(m.points.size())});
         }
     }
 

@@ -15,6 +15,10 @@ namespace {
 /// than up (60 degrees).
 constexpr double kSame = 1 - 5e-9, kNear = 0.99875, kSteep = 0.5;
 
+/// What a manifold that is kept is no seam by: a smaller angle (0.03 rad) and a deeper rim than
+/// kNear and kSkin, by ten times what kKeptMotion lets change.
+constexpr double kSurelyNear = 0.99955, kDeepSkin = kSkin + 10 * kKeptMotion;
+
 /// A part of a body's least half-size [m].
 double part_of(const TypeProperties& type, double part) { return part / kSlop * type.slop; }
 
@@ -148,7 +152,26 @@ bool lie_on_a_rim(const S& shape, const Pose& pose, BodyId body, const ContactLi
 
 }  // namespace
 
+bool is_never_seam(const Shape& shape, const Vec4& normal, std::span<const Vec4> points,
+                   const TypeProperties& body) {
+    const double depth = part_of(body, kDeepSkin);
+    return std::visit(
+        [&]<class S>(const S& s) {
+            if constexpr (!HasFaces<S> || !S::kBounded) {
+                return true;
+            } else {
+                if (!(normal.dot(face_along(s, normal).normal) >= kSurelyNear)) return false;
+                std::uint64_t faces = ~std::uint64_t{0};
+                for (const Vec4& point : points) faces &= faces_near(s, point, depth);
+                return std::popcount(faces) < 2;
+            }
+        },
+        shape);
+}
+
 bool may_be_seam(const Simulation& simulation, const StepData& step, const Meeting& m) {
+    const unsigned seen_from = m.other < m.body ? 1 : 2;
+    if (step.contacts.no_seam(m.begin, m.end) & seen_from) return false;
     const Placed other(simulation, step, m.other);
     const double depth = part_of(simulation.type_of(m.body), kSkin);
     return std::visit(

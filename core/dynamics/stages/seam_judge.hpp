@@ -19,6 +19,12 @@ struct Meeting {
 /// straight over one face of the other body, or they do and all near one of its rims.
 bool may_be_seam(const Simulation& simulation, const StepData& step, const Meeting& meeting);
 
+/// Whether that stays false while the two bodies move by kKeptMotion against each other.
+/// @param shape    the other body's; it has `normal`, out of it, and `points`, all of them, in its
+///                 own frame
+bool is_never_seam(const Shape& shape, const Vec4& normal, std::span<const Vec4> points,
+                   const TypeProperties& body);
+
 /// Contacts [begin, end) of the list give way to [first, last) of SeamJudge::contacts.
 struct SeamCorrection {
     std::uint32_t begin, end;

@@ -56,7 +56,8 @@ class ContactList {
     Contact operator[](std::size_t i) const {
         const Point& point = points_[i];
         const Shared& shared = shared_[point.shared];
-        return {shared.normal, point.place, point.separation, shared.a, shared.b, point.feature};
+        return {shared.normal, point.place,   point.separation, shared.a,
+                shared.b,      point.feature, shared.no_seam,   shared.no_seam_points};
     }
     /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
     /// little of each point go from run to run.
@@ -80,6 +81,11 @@ class ContactList {
         const Shared& shared = shared_[points_[i].shared];
         return {shared.a, shared.b};
     }
+    /// The pair's Contact::no_seam, if contacts [begin, end) are all the points that it is of.
+    unsigned no_seam(std::size_t begin, std::size_t end) const {
+        const Shared& shared = shared_[points_[begin].shared];
+        return shared.no_seam_points == end - begin ? shared.no_seam : 0u;
+    }
     const PackedVec4& normal(std::size_t i) const { return shared_[points_[i].shared].normal; }
     double separation(std::size_t i) const { return points_[i].separation; }
     std::uint32_t feature(std::size_t i) const { return points_[i].feature; }
@@ -98,7 +104,7 @@ class ContactList {
         const bool is_shared = size_ > 0 && share(contact, (*this)[size_ - 1]);
         if (!is_shared) {
             if (shared_.size() == shared_size_) shared_.emplace_back();
-            shared_[shared_size_++] = {contact.normal, contact.a, contact.b, place_of(size_)};
+            shared_[shared_size_++] = shared_of(contact, size_);
         }
         write(contact, size_++, shared_size_ - 1);
     }
@@ -136,6 +142,7 @@ class ContactList {
         PackedVec4 normal;
         BodyId a, b;
         std::uint32_t first;  ///< of the points
+        std::uint8_t no_seam, no_seam_points;
     };
     /// Places of a list's first contact and of what it shares.
     struct Start {
@@ -143,6 +150,9 @@ class ContactList {
     };
 
     static std::uint32_t place_of(std::size_t i) { return static_cast<std::uint32_t>(i); }
+    static Shared shared_of(const Contact& c, std::size_t first) {
+        return {c.normal, c.a, c.b, place_of(first), c.no_seam, c.no_seam_points};
+    }
     static bool share(const Contact& c, const Contact& d) {
         return c.a == d.a && c.b == d.b &&
                std::memcmp(c.normal.data(), d.normal.data(), 4 * sizeof(double)) == 0;
@@ -158,7 +168,7 @@ class ContactList {
             const bool is_shared = i > 0 && share(list[i - 1], c);
             if (i > 0 && !is_shared) ++start.shared;
             write(c, start.point + i, start.shared);
-            if (!is_shared) shared_[start.shared] = {c.normal, c.a, c.b, place_of(start.point + i)};
+            if (!is_shared) shared_[start.shared] = shared_of(c, start.point + i);
         }
     }
     void write(const Contact& c, std::size_t place, std::size_t shared) {

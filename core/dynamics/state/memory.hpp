@@ -41,6 +41,7 @@ struct KeptManifold {
     PackedVec4 normal = PackedVec4::Zero();  ///< from a to b where it was found, in a's frame
     std::vector<KeptPoint> points;
     Keeps keeps = Keeps::kUnknown;
+    std::uint8_t no_seam = 0;  ///< with all points: see Contact
 };
 /// Those of a range of pairs. What is kept from step to step is there once, in both steps' lists,
 /// and is not changed; none is made as a constant, so that its memory can be used again.
