@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/seam_judge.hpp"
 #include "core/dynamics/stages/step.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
@@ -40,6 +41,13 @@ class PairAtRest {
         std::vector<Contact> list;
         find_contacts(simulation_, step_, {0, 1}, list);
         return list;
+    }
+    /// Whether the pair may be a seam, seen from a (bit 0) and from b (bit 1).
+    unsigned seams_of(const std::vector<Contact>& list) {
+        step_.contacts = ContactList(list);
+        const auto end = static_cast<std::uint32_t>(list.size());
+        return (may_be_seam(simulation_, step_, {1, 0, 0, end}) ? 1u : 0u) |
+               (may_be_seam(simulation_, step_, {0, 1, 0, end}) ? 2u : 0u);
     }
     /// How far b may be moved against a [m].
     double most() const {
@@ -84,7 +92,7 @@ TEST(KeptContacts, AreThoseOfANewSearch) {
     const std::vector<BodyType> types = {box_type({1, 0.8, 0.6, 1.2}), box_type({2, 1, 1.5, 0.5}),
                                          regular_type(RegularPolychoron::k24Cell, 0.7),
                                          regular_type(RegularPolychoron::k8Cell, 0.8)};
-    int kept = 0;
+    int kept = 0, no_seam = 0;
     double worst = 0, worst_turned = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         const BodyType &a = types[random() % 4], &b = types[random() % 4];
@@ -118,6 +126,11 @@ TEST(KeptContacts, AreThoseOfANewSearch) {
         EXPECT_EQ(pair.manifold().offset, before.offset);  // not found again
         ASSERT_FALSE(now.empty());
         ASSERT_FALSE(anew.empty());
+        // What is known of seams beforehand is what the points say.
+        std::vector<Contact> unknown = now;
+        for (Contact& contact : unknown) contact.no_seam = 0;
+        EXPECT_EQ(pair.seams_of(now), pair.seams_of(unknown)) << trial;
+        if (now[0].no_seam != 0 && now.size() == now[0].no_seam_points) ++no_seam;
         const double difference = std::abs(deepest(now) - deepest(anew));
         EXPECT_LT((now[0].normal - anew[0].normal).norm(), 2 * (1e-4 + angle) + 1e-12) << trial;
         if (!turns) worst = std::max(worst, difference);
@@ -126,6 +139,7 @@ TEST(KeptContacts, AreThoseOfANewSearch) {
             worst_turned = std::max(worst_turned, difference / ((1e-4 + angle) * pair.radius()));
     }
     EXPECT_GT(kept, 1000);
+    EXPECT_GT(no_seam, 500);
     EXPECT_LT(worst, 1e-13);
     EXPECT_LT(worst_turned, 1);
 }
