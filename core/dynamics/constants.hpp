@@ -36,10 +36,10 @@ constexpr double kTouch = 0.005;
 /// slides slowly stands on where it was; less, and what hardly moves costs as much as what does.
 constexpr double kKeptMotion = 0.001;
 
-/// Gap that rests, in the slop of the pair, usual 0.02: what is less than this apart is kept there
-/// and need not close. 0, and points that bear a load open and close whenever a wall trembles, and
-/// keep it trembling (20 to 40 sweeps a step instead of 8); more, and bodies stop visibly above
-/// what they come to rest on.
+/// Gap that rests with Solver::kImpulse, in the slop of the pair, usual 0.02: what is less than
+/// this apart is kept there and need not close. 0, and points that bear a load open and close
+/// whenever a wall trembles, and keep it trembling (20 to 40 sweeps a step instead of 8); more, and
+/// bodies stop visibly above what they come to rest on.
 constexpr double kRestingGap = 0.02;
 
 /// Margin of manifolds that are kept, in the slop of the pair, usual 2. More, and points that do
@@ -91,9 +91,16 @@ constexpr double kLargeBlowResidual = 1e-3;
 /// a wall of 20 rows takes 20 sweeps a step on average); more only cost more.
 constexpr int kLeastSweeps = 8;
 
-/// How many times the last direction a new one may go on with, usual 4; more, and what it is
-/// conjugate to is no longer there, as contacts have opened or slipped: it begins anew.
+/// How many times as steep a step along a direction may leave the energy, usual 4: the part of the
+/// last direction that the next one goes on with. More, and what it is conjugate to is no longer
+/// there, as contacts have opened or slipped: steps explode; less, and directions are given up that
+/// lead there.
 constexpr double kMostCarried = 4;
+
+/// How long a step along a direction is at most, in the sweeps' own step, usual 8. More, and the
+/// rounding of directions is carried so far: what moves freely drifts (at 16 a wall sways by more
+/// than a millimetre a second); less, and slow errors take longer.
+constexpr double kLongestStep = 8;
 
 /// Friction coefficient up to which directions are conjugate, usual 1. More, and friction may do
 /// more to an approach than the normal impulse that it goes with: sweeps then need not come nearer

@@ -185,21 +185,14 @@ template <bool kFriction, bool kRolling, class F>
         }
     }
 }
-/// The same from the last to the first.
-template <bool kFriction, bool kRolling, class F>
+/// The same from the last to the first, without rolling, with which there are no adjoints.
+template <bool kFriction, class F>
 [[gnu::always_inline]] inline void solve_parts_adjoint(const Lane<F>& lane,
                                                        const PairSweep<F>& pair,
                                                        std::uint32_t index, bool soft,
                                                        PairMotion<F>& of, F& left) {
     if constexpr (kFriction) {
         const PairFriction& friction = pair.coloured.pair_friction[index];
-        if constexpr (kRolling) {
-            const PairRolling& rolling = pair.coloured.pair_rolling[index];
-            solve_twisting(lane, pair, rolling, friction, of);
-            of.see_across(lane, friction);
-            solve_rolling(lane, pair, rolling, of);
-            of.see_along(lane, friction);
-        }
         solve_friction(lane, pair, friction, of, left);
         of.see_across(lane, friction);
     }
@@ -221,8 +214,8 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         add(load_all(lane, coloured.pair_friction[index].motion), of.motion.across);
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     F left{};
-    if (sweep.adjoint())
-        solve_parts_adjoint<kFriction, kRolling>(lane, pair, index, soft, of, left);
+    if (sweep.adjoint)
+        solve_parts_adjoint<kFriction>(lane, pair, index, soft, of, left);
     else
         solve_parts<kFriction, kRolling>(lane, pair, index, soft, of, left);
     bodies.apply(frame.to_world(of.impulse));
@@ -274,38 +267,63 @@ void leave_whirling_general(const ColouredStage& stage, BatchRange batches) {
     }
 }
 
-void keep_general(const ColouredStage& stage, BatchRange batches) {
+namespace {
+
+/// A lane's angular impulse [N m s, world] of a row.
+Bivector angular_impulse_in_lane(const GeneralRolling& row, const PairFrame& frame,
+                                 std::size_t lane) {
+    Vec4 h;
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        h[static_cast<int>(axis)] = frame.h[axis].lane[lane];
+    const auto entry = [&](std::size_t at) { return double{row.impulse[at].lane[lane]}; };
+    const double g = h[3] < 0 ? 1 : -1;
+    const Bivector turned = {entry(3), entry(4),     g * entry(0),
+                             entry(5), g * entry(1), g * entry(2)};
+    return turned - wedge(h, velocity_at(turned, h));
+}
+
+/// The impulses of a row in the world, lane by lane.
+void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t point) {
     const ColouredIslands& coloured = stage.step.coloured;
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const Batch& batch = coloured.general[i];
-        for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
-            Vec4 h;
-            for (int axis = 0; axis < 4; ++axis) h[axis] = coloured.frames[i].h[axis].lane[k];
-            for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
-                const float normal = coloured.rows[batch.row + p].along.impulse.lane[k];
-                if (stage.cause == Cause::kBlow) {
-                    stage.step.hit[batch.contact[k] + p] = normal > 0;
-                    continue;
-                }
-                ContactImpulse& impulse = stage.step.impulses[batch.contact[k] + p];
-                impulse.normal = stage.mass_unit * normal;
-                impulse.tangent.setZero();
-                if (!coloured.friction) continue;
-                Vec4 tangent = Vec4::Zero();
-                for (int axis = 0; axis < 3; ++axis)
-                    tangent[axis] = coloured.general_friction[batch.row + p].impulse[axis].lane[k];
-                impulse.tangent = stage.mass_unit * (tangent - h.dot(tangent) * h);
-                if (!coloured.rolling) continue;
-                const auto& turns = coloured.general_rolling[batch.row + p].impulse;
-                const auto entry = [&](std::size_t at) { return double{turns[at].lane[k]}; };
-                const double g = h[3] < 0 ? 1 : -1;
-                const Bivector turned = {entry(3), entry(4),     g * entry(0),
-                                         entry(5), g * entry(1), g * entry(2)};
-                stage.step.angular_impulses[batch.contact[k] + p] =
-                    stage.mass_unit * (turned - wedge(h, velocity_at(turned, h)));
-            }
-        }
+    const Batch& batch = coloured.general[index];
+    const std::uint32_t row = batch.row + point;
+    std::array<std::array<float, 4>, kLanes> tangents = {};
+    if (coloured.friction) {
+        const Lane<Float8> all;
+        const Frame<Float8> frame(load(all, coloured.frames[index].h));
+        std::array<float*, kLanes> to;
+        for (std::size_t k = 0; k < kLanes; ++k) to[k] = tangents[k].data();
+        store_four(frame.reflected(load(all, coloured.general_friction[row].impulse)).c, to);
     }
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        if (point >= batch.points[k]) continue;
+        const std::uint32_t contact = batch.contact[k] + point;
+        ContactImpulse& impulse = stage.step.impulses[contact];
+        impulse.normal = stage.mass_unit * coloured.rows[row].along.impulse.lane[k];
+        impulse.tangent = stage.mass_unit * Eigen::Vector4f(tangents[k].data()).cast<double>();
+        if (coloured.rolling)
+            stage.step.angular_impulses[contact] =
+                stage.mass_unit *
+                angular_impulse_in_lane(coloured.general_rolling[row], coloured.frames[index], k);
+    }
+}
+
+void keep_hits(const ColouredStage& stage, std::uint32_t index, std::uint32_t point) {
+    const Batch& batch = stage.step.coloured.general[index];
+    const Eight& normal = stage.step.coloured.rows[batch.row + point].along.impulse;
+    for (std::size_t k = 0; k < kLanes; ++k)
+        if (point < batch.points[k]) stage.step.hit[batch.contact[k] + point] = normal.lane[k] > 0;
+}
+
+}  // namespace
+
+void keep_general(const ColouredStage& stage, BatchRange batches) {
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        for (std::uint32_t point = 0; point < stage.step.coloured.general[i].rows; ++point)
+            if (stage.cause == Cause::kBlow)
+                keep_hits(stage, i, point);
+            else
+                keep_row(stage, i, point);
 }
 
 }  // namespace tesserae

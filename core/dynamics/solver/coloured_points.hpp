@@ -19,7 +19,6 @@ struct alignas(32) EightPoints {
     Fours velocity = {};  ///< relative, of the start
     Fours impulse = {};   ///< the tangent one, to start from
     Fours along = {};     ///< target, relax target, keep, normal impulse
-    Eight start;          ///< normal velocity of the start
 };
 
 /// A pair of each lane and its points, of any bodies.
@@ -63,7 +62,6 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
     put(v - along * c.normal, points.velocity[lane]);
     put(impulse.tangent / stage.mass_unit, points.impulse[lane]);
-    points.start.lane[lane] = static_cast<float>(along);
     put({targets.solve - along, targets.relax - along, targets.keep,
          impulse.normal / stage.mass_unit},
         points.along[lane]);
@@ -103,15 +101,16 @@ inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index,
 
 /// In the midst of a pair's points, as high along the normal as the deepest.
 inline Vec4 centre_of(const StepData& step, std::uint32_t first, std::size_t count) {
-    Vec4 sum = Vec4::Zero();
-    Contact deepest = step.contacts[first];
-    for (std::uint32_t i = first; i < first + count; ++i) {
+    const Contact contact = step.contacts[first];
+    Vec4 sum = contact.point, deepest = contact.point;
+    double least = contact.separation;
+    for (std::uint32_t i = first + 1; i < first + count; ++i) {
         const Contact c = step.contacts[i];
         sum += c.point;
-        if (c.separation < deepest.separation) deepest = c;
+        if (c.separation < least) least = c.separation, deepest = c.point;
     }
     const Vec4 mean = sum / static_cast<double>(count);
-    return mean + deepest.normal.dot(deepest.point - mean) * deepest.normal;
+    return mean + contact.normal.dot(deepest - mean) * contact.normal;
 }
 
 /// As put_point(), of a pair with so many contacts from `first` on.
@@ -141,7 +140,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
         const Vec4 place = c.point - centre;
-        const double along = contact.normal.dot(v + velocity_at(turning, place));
+        const double along =
+            targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
         const ContactTargets targets = targets_of.at(c.separation, along);
         put(place, point.place[lane]);
         put(per_mass_unit * impulse.tangent, point.impulse[lane]);

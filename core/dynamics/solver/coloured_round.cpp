@@ -71,7 +71,6 @@ template <bool kFriction, bool kRolling, class F>
 
     RoundRow& row = coloured.round_rows[batch];
     store(lane, n, row.normal);
-    lane.store(lane.load(points.start), row.start);
     const F normal_impulse = start_normal(lane, points.along, response, F{}, row.along);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
@@ -117,9 +116,6 @@ template <bool kFriction, bool kRolling, class F>
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     F normal_impulse;
     const F change = solve_normal(lane, row.along, along, soft, sweep.pass, normal_impulse);
-    if constexpr (kRolling)
-        if (sweep.adjoint())
-            solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -135,8 +131,7 @@ template <bool kFriction, bool kRolling, class F>
         turn(n, tangent_change, arm_a, arm_b, a, b);
     }
     if constexpr (kRolling)
-        if (!sweep.adjoint())
-            solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
+        solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
     apply(sum(tangent_change, change, n), a, b);
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);

@@ -116,11 +116,15 @@ class ConjugateDirections {
         for_bodies([](auto... of) { weigh_step(of...); });
         for_rows([&](BatchRange some) { weigh_round_step(stage, some); },
                  [&](BatchRange some) { weigh_general_step(stage, some); });
-        std::array<double, 2> slopes = work();  // r.z and r.p_last
+        Sums sums = {};  // r.z, r.p_last and the energy
         for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
-            for (std::size_t k = 0; k < 2; ++k) slopes[k] += stage.step.coloured.body_sums[i][k];
-        const double ratio = last_slope_ > 0 ? slopes[0] / last_slope_ : 0;
-        carried_ = ratio > 0 && ratio <= kMostCarried ? static_cast<float>(ratio) : 0;
+            for (std::size_t k = 0; k < 3; ++k) sums[k] += stage.step.coloured.body_sums[i][k];
+        const double rounding = kFloatStep * kFloatStep * sums[2];
+        const Sums of_rows = work();
+        for (std::size_t k = 0; k < 3; ++k) sums[k] += of_rows[k];
+        const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
+        look_for_rise(ratio, sums[2]);
+        carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
         for_bodies([this](auto... of) { find_direction(of..., carried_); });
 
         double twice_energy = 0, fastest = 0;
@@ -128,11 +132,10 @@ class ConjugateDirections {
             twice_energy += stage.step.coloured.body_sums[i][0];
             fastest = std::max(fastest, stage.step.coloured.body_sums[i][1]);
         }
-        // Where contacts have opened or slipped the sweeps' own step may be the better one.
-        const double length = (slopes[0] + carried_ * slopes[1]) / twice_energy;
-        holds_ = length > 1 && length < kLongest;
-        length_ = holds_ ? static_cast<float>(length) : 1;
-        slope_ = slopes[0];
+        const double length = (sums[0] + carried_ * sums[1]) / twice_energy;
+        holds_ = plain_ == 0 && length > 1 && sums[0] > rounding;
+        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
+        slope_ = sums[0];
         return length_ * std::sqrt(fastest);
     }
     /// From there on to the next pair.
@@ -140,6 +143,7 @@ class ConjugateDirections {
         const ColouredStage& stage = island_.stage();
         last_slope_ = holds_ ? slope_ : 0;
         if (!holds_) {
+            plain_ = std::max(0, plain_ - 1);
             for_bodies([](auto... of) { go_from_end(of...); });
             return begin_rows();
         }
@@ -149,9 +153,19 @@ class ConjugateDirections {
     }
 
   private:
-    /// Steps are at most so long, in those of the sweeps: floats have no more digits.
-    static constexpr double kLongest = 1e6;
+    using Sums = std::array<double, 3>;
+    /// What is changed by less than this part of all is rounding, of which directions would grow.
+    static constexpr double kFloatStep = 1e-5;
 
+    /// After a step along a direction that led away from the solution there are none for a while.
+    /// @param ratio   of r.z to that before the step
+    void look_for_rise(double ratio, double energy) {
+        if (last_slope_ > 0 && !(energy <= last_energy_ && ratio <= kMostCarried)) {
+            plain_ = pause_;
+            pause_ = 2 * pause_;
+        }
+        last_energy_ = energy;
+    }
     /// Calls work(stage, bodies).
     template <class Work>
     void for_bodies(const Work& work) const {
@@ -167,12 +181,12 @@ class ConjugateDirections {
                  [&](BatchRange some) { begin_general_directions(stage, some); });
     }
     /// Sums of round_work and general_work, in the order of the batches for any number of threads.
-    std::array<double, 2> work() const {
+    Sums work() const {
         const ColouredIslands& coloured = island_.stage().step.coloured;
-        std::array<double, 2> sums = {};
+        Sums sums = {};
         const auto add = [&](const auto& list, BatchRange batches) {
             for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-                for (std::size_t k = 0; k < 2; ++k)
+                for (std::size_t k = 0; k < 3; ++k)
                     for (const float x : list[i][k].lane) sums[k] += x;
         };
         island_.for_colours(OneThread{}, LaneCount::kOne, false,
@@ -186,6 +200,8 @@ class ConjugateDirections {
     const ColouredIsland& island_;
     const Threads& threads_;
     double slope_ = 0, last_slope_ = 0;  ///< r.z
+    double last_energy_ = 0;             ///< at the end of the last pair
+    int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time
     float carried_ = 0, length_ = 1;
     bool holds_ = false;  ///< the direction
 };
@@ -232,7 +248,8 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
     std::optional<ConjugateDirections<Threads>> directions;
     double residual = 0;
     for (int i = 0; i < effort.sweeps; ++i) {
-        const Sweep sweep = sweep_of(Pass::kSolve, effort, i);
+        Sweep sweep = sweep_of(Pass::kSolve, effort, i);
+        sweep.adjoint = sweep.backward;
         if (sweep.backward && directions) directions->go_on();
         if (sweep.backward && !directions) directions.emplace(island, threads);
         residual = sweep_coloured(island, sweep, threads, lanes);

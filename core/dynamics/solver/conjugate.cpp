@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/solver/coloured_place.hpp"
+
 namespace tesserae {
 namespace {
 
@@ -17,8 +19,6 @@ void visit_round(ColouredIslands& coloured, std::size_t row, const Visit& visit)
     visit(coloured.round_rows[row].along.impulse, place++);
     if (!coloured.friction) return;
     for (Eight& impulse : coloured.round_friction[row].impulse) visit(impulse, place++);
-    if (!coloured.rolling) return;
-    for (Eight& impulse : coloured.round_rolling[row].impulse) visit(impulse, place++);
 }
 /// The same of the rows of batches of any bodies.
 template <class Visit>
@@ -30,8 +30,6 @@ void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& v
             visit(coloured.rows[row].along.impulse, place++);
             if (!coloured.friction) continue;
             for (Eight& impulse : coloured.general_friction[row].impulse) visit(impulse, place++);
-            if (!coloured.rolling) continue;
-            for (Eight& impulse : coloured.general_rolling[row].impulse) visit(impulse, place++);
         }
     }
 }
@@ -55,19 +53,43 @@ auto go(std::vector<Eight>& last, std::vector<Eight>& direction, float carried, 
     };
 }
 
-/// Of normal impulses: all other targets are 0.
-struct Work {
-    Float8 of_step{}, of_direction{};
+/// What sums over a batch's rows add up: changes of impulses, directions and impulses times the
+/// velocities of the load's start less the targets.
+class Work {
+  public:
+    Work(const std::vector<Eight>& last, const std::vector<Eight>& direction, std::size_t place)
+        : last_(&last[place]), direction_(&direction[place]) {}
+    /// Of the next eight impulses.
+    void add(const Eight& impulse, Float8 velocity) {
+        const Float8 now = kAll.load(impulse);
+        of_step_ = simd::fused(kAll.load(*last_++) - now, velocity, of_step_);
+        of_direction_ = simd::fused(-kAll.load(*direction_++), velocity, of_direction_);
+        of_all_ = simd::fused(now, velocity, of_all_);
+    }
+    void store(std::array<Eight, 3>& to) const {
+        kAll.store(of_step_, to[0]);
+        kAll.store(of_direction_, to[1]);
+        kAll.store(of_all_, to[2]);
+    }
 
-    void add(const Eight& impulse, const Eight& last, const Eight& direction, Float8 target) {
-        of_step += (kAll.load(impulse) - kAll.load(last)) * target;
-        of_direction += kAll.load(direction) * target;
-    }
-    void store(std::array<Eight, 2>& to) const {
-        kAll.store(of_step, to[0]);
-        kAll.store(of_direction, to[1]);
-    }
+  private:
+    const Eight *last_, *direction_;
+    Float8 of_step_{}, of_direction_{}, of_all_{};
 };
+
+/// Of a row of any bodies.
+void add_row(const ColouredIslands& coloured, std::uint32_t index, std::uint32_t row, Work& work) {
+    const NormalRow& along = coloured.rows[row].along;
+    const lanes::Place<Float8> at = lanes::place_of(kAll, coloured.rows[row]);
+    const std::array<Float8, 4> start = lanes::load_all(kAll, coloured.frames[index].motion);
+    work.add(along.impulse, lanes::along_at(at, start) - kAll.load(along.target));
+    if (!coloured.friction) return;
+    const std::array<Float8, 6> across =
+        lanes::load_all(kAll, coloured.pair_friction[index].motion);
+    const lanes::LaneVec4<Float8> slip = lanes::across_at(at, across);
+    const auto& tangent = coloured.general_friction[row].impulse;
+    for (std::size_t i = 0; i < 3; ++i) work.add(tangent[i], slip[i]);
+}
 
 /// What contacts change of a body's motion, so weighted that products are of energies.
 WeightedMotion weighted(const ColouredStage& stage, BodyId id, const BodyMotion& motion) {
@@ -122,18 +144,16 @@ BodyMotion difference(const BodyChange& a, const BodyChange& b) {
 bool has_conjugates(const Simulation& simulation) {
     return simulation.settings.solver == Solver::kImpulse &&
            std::all_of(
-               simulation.types.begin(), simulation.types.end(),
-               [](const TypeProperties& type) { return type.friction <= kMostConjugateFriction; });
+               simulation.types.begin(), simulation.types.end(), [](const TypeProperties& type) {
+                   return type.friction <= kMostConjugateFriction && type.rolling_friction == 0;
+               });
 }
 
 void begin_weights(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = coloured.bodies[i];
-        const BodyMotion start = motion_of(stage.step, id);
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
         coloured.weighted_motion[i] =
-            weighted(stage, id, start + difference(coloured.changes[i], BodyChange{}));
-    }
+            weighted(stage, coloured.bodies[i], difference(coloured.changes[i], BodyChange{}));
 }
 
 void begin_directions(const ColouredStage& stage, Range bodies) {
@@ -162,19 +182,25 @@ void weigh_step(const ColouredStage& stage, Range bodies) {
         const WeightedMotion& motion = coloured.weighted_motion[i];
         coloured.weighted_step[i] = weighted(
             stage, coloured.bodies[i], difference(coloured.changes[i], coloured.last_changes[i]));
+        WeightedMotion end;
+        for (std::size_t k = 0; k < end.size(); ++k)
+            end[k] = motion[k] + coloured.weighted_step[i][k];
         coloured.body_sums[i] = {-product(coloured.weighted_step[i], motion),
-                                 -product(coloured.weighted_direction[i], motion)};
+                                 -product(coloured.weighted_direction[i], motion),
+                                 0.5 * product(end, end)};
     }
 }
 
 void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const RoundRow& row = coloured.round_rows[i];
-        const std::size_t place = i * impulses_of_round(coloured);
-        Work work;
-        work.add(row.along.impulse, coloured.last_round[place], coloured.round_direction[place],
-                 kAll.load(row.along.target) + kAll.load(row.start));
+        Work work(coloured.last_round, coloured.round_direction, i * impulses_of_round(coloured));
+        const NormalRow& along = coloured.round_rows[i].along;
+        work.add(along.impulse, -kAll.load(along.target));
+        if (coloured.friction)
+            for (std::size_t k = 0; k < 4; ++k)
+                work.add(coloured.round_friction[i].impulse[k],
+                         kAll.load(coloured.round_friction[i].slip[k]));
         work.store(coloured.round_work[i]);
     }
 }
@@ -183,13 +209,10 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.general[i];
-        Work work;
-        for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
-            const NormalRow& along = coloured.rows[row].along;
-            const std::size_t place = row * impulses_of_general(coloured);
-            work.add(along.impulse, coloured.last_general[place], coloured.general_direction[place],
-                     kAll.load(along.target));
-        }
+        Work work(coloured.last_general, coloured.general_direction,
+                  batch.row * impulses_of_general(coloured));
+        for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row)
+            add_row(coloured, i, row, work);
         work.store(coloured.general_work[i]);
     }
 }
@@ -204,12 +227,9 @@ void find_direction(const ColouredStage& stage, Range bodies, float carried) {
         WeightedMotion& weighted = coloured.weighted_direction[i];
         for (std::size_t k = 0; k < weighted.size(); ++k)
             weighted[k] = coloured.weighted_step[i][k] + carried * weighted[k];
-        const BodyMotion change = difference(direction, BodyChange{});
-        const double radius = stage.simulation.type_of(coloured.bodies[i]).radius;
-        const double turning = dot(change.angular_velocity, change.angular_velocity);
-        coloured.body_sums[i] = {
-            product(weighted, weighted),
-            std::max(change.velocity.squaredNorm(), radius * radius * turning)};
+        double squared_speed = 0;
+        for (const float v : direction.velocity) squared_speed += double{v} * v;
+        coloured.body_sums[i] = {product(weighted, weighted), squared_speed, 0};
     }
 }
 

@@ -13,15 +13,20 @@ namespace tesserae {
 // energy. So errors that spread over many bodies, as a high wall's sway, are gone in as many pairs
 // as there are kinds of them, and not in thousands of sweeps.
 //
+// Where contacts open or slip the system is another one, and a step along p may lead away from its
+// solution. The energy at the end of a pair, which else only falls, then rises, and the direction
+// is given up for a pair of sweeps, the next time for two, then for four, and so on.
+//
 // With r the gradient's opposite, b = r.z/(r.z)_last and a = r.p/p.Ap. p.Ap is twice the kinetic
-// energy of what p does to the bodies; r.p is p times the rows' targets, less what p does to the
-// bodies times how they move, weighted by mass and inertia.
+// energy of what p does to the bodies; -r.p is what p does to them times what x has done, weighted
+// by mass and inertia, and p times the rows' velocities at the start, less their targets.
 
-/// Whether friction is nowhere so strong that what a sweep changes may grow: see
-/// kMostConjugateFriction.
+/// Whether loads go along conjugate directions: friction is nowhere so strong that what a sweep
+/// changes may grow, see kMostConjugateFriction, and nothing has rolling friction, which what rolls
+/// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
-/// The weighted motion that the load starts from.
+/// What the impulses that the load starts from have changed, weighted.
 void begin_weights(const ColouredStage& stage, Range bodies);
 
 /// What the next pair of sweeps goes on from, without a direction.
@@ -29,14 +34,14 @@ void begin_directions(const ColouredStage& stage, Range bodies);
 void begin_round_directions(const ColouredStage& stage, BatchRange batches);
 void begin_general_directions(const ColouredStage& stage, BatchRange batches);
 
-/// After a pair: what it changed, weighted, and r.z and r.p_last: of each body, into body_sums; of
-/// each batch, into round_work and general_work.
+/// After a pair: what it changed, weighted, and r.z, r.p_last and the energy at its end: of each
+/// body, into body_sums; of each batch, into round_work and general_work.
 void weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);
 
-/// The bodies' part of the new direction; p.Ap and the square of how fast it moves any point, of
-/// each body, into body_sums.
+/// The bodies' part of the new direction; p.Ap and the square of the change of velocity, of each
+/// body, into body_sums.
 /// @param carried   b
 void find_direction(const ColouredStage& stage, Range bodies, float carried);
 

@@ -42,12 +42,10 @@ inline Effort effort_of_large_blow(const Simulation& simulation, double fastest)
 struct Sweep {
     Pass pass;
     bool backward, measured;  ///< measured: the residual is wanted
-
-    /// Whether pairs of coloured islands are gone through from their last part to their first: a
-    /// backward sweep is then the adjoint of a forward one, which conjugate directions need. Passes
-    /// that end backward end with friction all the same, so that no contact has more of it than its
-    /// normal impulse allows.
-    bool adjoint() const { return backward && pass == Pass::kSolve; }
+    /// Pairs of coloured islands are gone through from their last part to their first, so that a
+    /// backward sweep is the adjoint of a forward one, which conjugate directions need. Others end
+    /// sooner and with friction, so that no contact has more of it than its normal impulse allows.
+    bool adjoint = false;
 };
 inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
     const int left = effort.sweeps - 1 - iteration;

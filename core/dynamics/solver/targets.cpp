@@ -91,7 +91,7 @@ ContactTargets PairTargets::at(double separation, double velocity) const {
 ContactTargets PairTargets::of_overlap(double s) const {
     ContactTargets targets;
     if (s > -slop_) {
-        targets.solve = targets.relax = s > kRestingGap * slop_ ? -s / h_ : 0;
+        targets.solve = targets.relax = s > (soft_ ? 0 : kRestingGap * slop_) ? -s / h_ : 0;
         return targets;
     }
     const double depth = -(s + slop_);

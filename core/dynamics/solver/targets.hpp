@@ -38,6 +38,8 @@ class PairTargets {
     /// @param velocity   along the normal, at which the bodies part before the first impulse of the
     ///                   cause [m/s]
     ContactTargets at(double separation, double velocity) const;
+    /// Else the velocity may be anything.
+    bool need_velocity() const { return bounces_; }
 
   private:
     ContactTargets of_overlap(double separation) const;

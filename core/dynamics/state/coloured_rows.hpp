@@ -29,8 +29,8 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
-/// A body's motion, so weighted that the square of its length is twice the energy [J over the mass
-/// unit]: velocity, and turning in the principal planes.
+/// A change of a body's motion, so weighted that the square of its length is twice its energy [J
+/// over the mass unit]: velocity, and turning in the principal planes.
 using WeightedMotion = std::array<float, 10>;
 
 /// World inverse inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
@@ -61,7 +61,6 @@ struct NormalRow {
 struct RoundRow {
     std::array<Eight, 4> normal;
     NormalRow along;
-    Eight start;  ///< normal velocity of the start, which the target is less by [m/s]
 };
 struct RoundFriction {
     Eight arm_a, arm_b;  ///< from the centres to the contact point, along n and against it [m]
@@ -146,9 +145,9 @@ struct ColouredIslands {
     // with, x, what the pair added, z, and the direction, p.
     std::vector<BodyChange> last_changes, direction;
     std::vector<WeightedMotion> weighted_motion, weighted_step, weighted_direction;
-    std::vector<std::array<double, 2>> body_sums;  ///< of `bodies`: two of a sum's items
+    std::vector<std::array<double, 3>> body_sums;  ///< of `bodies`: items of sums
     std::vector<Eight> last_round, last_general, round_direction, general_direction;
-    std::vector<std::array<Eight, 2>> round_work, general_work;  ///< z, p times targets, a batch
+    std::vector<std::array<Eight, 3>> round_work, general_work;  ///< likewise of each batch
     std::vector<BodyInertia> inertias;              ///< of `bodies`, if any turns unevenly
     std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
     std::vector<RoundRow> round_rows;               ///< of `round`
@@ -162,12 +161,12 @@ struct ColouredIslands {
     std::vector<GeneralRolling> general_rolling;    ///< of `rows`
 };
 
-/// Eights of impulses of a row.
+/// Eights of impulses of a row but for rolling, with which there are no directions.
 inline std::size_t impulses_of_round(const ColouredIslands& coloured) {
-    return 1 + (coloured.friction ? 4 : 0) + (coloured.rolling ? 6 : 0);
+    return coloured.friction ? 5 : 1;
 }
 inline std::size_t impulses_of_general(const ColouredIslands& coloured) {
-    return 1 + (coloured.friction ? 3 : 0) + (coloured.rolling ? 6 : 0);
+    return coloured.friction ? 4 : 1;
 }
 
 }  // namespace tesserae

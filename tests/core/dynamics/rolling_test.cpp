@@ -252,7 +252,8 @@ TEST(RollingFriction, TakesACapsulesEnergyByTheAngleThatItRolls) {
             for (int i = 0; i < 2400; ++i) {
                 world.step(kStep);
                 const double energy = kinetic_energy(world.bodies());
-                EXPECT_LE(energy, last + 1e-9);
+                // At rest it moves below the tolerance, that is by up to 1e-8 J.
+                EXPECT_LE(energy, last + mass / 2 * settings.tolerance * settings.tolerance);
                 last = energy;
             }
             EXPECT_LT(last, 1e-12);

@@ -204,8 +204,8 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
             hits += std::count(coloured.hit.begin(), coloured.hit.end(), 1);
             const bool single = plain.contacts.size() == 1;
             // At one point friction and turning take turns until the same (measured: 2e-5).
-            // Steps along directions carry roundings on, and to another solution where there are several
-            // (measured: 7e-3 m/s): both have ended, which the residual tells. Nor does the
+            // Steps along directions carry roundings on, and to another solution where there are
+            // several (measured: 7e-3 m/s): both have ended, which the residual tells. Nor does the
             // coloured one see how much higher one point lies than another.
             const bool carried = !single && friction > 0 && friction <= kMostConjugateFriction;
             // Friction of 100 keeps some from ending, chiefly one by one, point after point, where
