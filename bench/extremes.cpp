@@ -1,8 +1,11 @@
 // Stiff and extreme scenes under both solvers: CSV on standard output. `extremes long` adds the
 // longest one.
 
+#include <fmt/core.h>
+
 #include <cstring>
 #include <exception>
+#include <string>
 
 #include "bench/extreme_cases.hpp"
 #include "bench/thread_time.hpp"
@@ -12,7 +15,7 @@ namespace tesserae::bench {
 namespace {
 
 struct Named {
-    const char* name;
+    std::string name;
     PhysicsSettings settings;
 };
 
@@ -21,7 +24,7 @@ std::vector<Named> settings() {
     soft.solver = Solver::kSoft;
     soft.substeps = 4;
     soft.iterations = 2;
-    return {{"impulse 1x40", impulse}, {"soft 4x2", soft}};
+    return {{fmt::format("impulse 1x{}", impulse.iterations), impulse}, {"soft 4x2", soft}};
 }
 
 void print(const ExtremeCase& extreme, const Named& named) {
