@@ -99,8 +99,7 @@ template <bool kFriction, bool kRolling, class F>
 
 /// The normal first and then friction, as solve_row() does: the response is the same along every
 /// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
-/// Neither changes what the other sees, but rolling does what friction sees: the adjoint begins
-/// with it.
+/// Neither changes what the other sees, so that without rolling this is its own adjoint.
 template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline F solve_batch(const ColouredStage& stage, const Lane<F>& lane,
                                             std::uint32_t batch, Sweep sweep) {

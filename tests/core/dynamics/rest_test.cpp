@@ -171,7 +171,7 @@ TEST(Rest, OfAWallThatDoesNotSway) {
     EXPECT_LT(sway_of_wall(settings), 1e-3);
 }
 
-/// Conjugate directions see what all of a wall does together: without them it sways by 20 mm/s.
+/// Conjugate directions see what all of a wall does together: without them it sways by 17 mm/s.
 TEST(Rest, OfAWallByTwelveSweeps) {
     PhysicsSettings settings;
     settings.tolerance = 0;
