@@ -1,5 +1,4 @@
-#include "core/dynamics/solver/coloured_place.hpp"
-#include "core/dynamics/solver/coloured_points.hpp"
+#include "core/dynamics/solver/coloured_normals.hpp"
 
 namespace tesserae {
 namespace {
@@ -37,10 +36,6 @@ struct PairSweep {
     [[gnu::always_inline]] std::uint32_t row(std::uint32_t i) const {
         return batch.row + (sweep.backward ? batch.rows - 1 - i : i);
     }
-    /// The same or the other way round, unmeasured.
-    [[gnu::always_inline]] PairSweep another(bool round) const {
-        return {coloured, batch, frame, {sweep.pass, sweep.backward != round, false}};
-    }
 };
 
 /// A pair's motion while its points are solved, and what has been changed, seen from the centre.
@@ -65,38 +60,42 @@ struct PairMotion {
     }
 };
 
-/// All points' normal impulses, in the order of the sweep.
-/// @param left   the largest velocity_left(), if it is measured
+/// All points' normal impulses, in the order of the sweep and then the other way round: its own
+/// adjoint. What comes last has its way, and so a pair that is gone through one way only leans.
+/// Not inlined: the points' velocities then have the registers to themselves.
+/// @return the largest velocity that was left to solve, if it is measured
+template <std::size_t kPoints, class F>
+[[gnu::noinline]] F solve_normals_of(const PairSweep<F>& pair, const Lane<F>& lane, bool soft,
+                                     PairMotion<F>& of) {
+    const auto& [pass, backward, measured, adjoint] = pair.sweep;
+    PairNormals<kPoints, F> normals(lane, pair.coloured, pair.batch, of.motion.along);
+    F left;
+    if (backward) {
+        left = normals.template solve<true, true>(pass, soft, measured);
+        normals.template solve<false, false>(pass, soft, false);
+    } else {
+        left = normals.template solve<false, true>(pass, soft, measured);
+        normals.template solve<true, false>(pass, soft, false);
+    }
+    normals.add_impulse(of.impulse.along);
+    return left;
+}
 template <class F>
 [[gnu::always_inline]] inline void solve_normals(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  bool soft, PairMotion<F>& of, F& left) {
-    const F one = F{} + 1.0f;
-    std::array<F, 4>&motion = of.motion.along, &impulse = of.impulse.along;
-    for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
-        GeneralRow& row = pair.coloured.rows[pair.row(i)];
-        const Place<F> at = place_of(lane, row);
-        F all;
-        const F change =
-            solve_normal(lane, row.along, along_at(at, motion), soft, pair.sweep.pass, all);
-        const std::array<F, 4> unit = {one, at[0], at[1], at[2]};
-        std::array<F, 4> response{};
-        add_product(lane, pair.frame.response, unit, response);
-        for (std::size_t k = 0; k < 4; ++k) {
-            motion[k] = fused(change, response[k], motion[k]);
-            impulse[k] = fused(change, unit[k], impulse[k]);
+    const auto solve = [&] {
+        switch (padded_points(pair.batch.rows)) {
+            case 1:
+                return solve_normals_of<1>(pair, lane, soft, of);
+            case 2:
+                return solve_normals_of<2>(pair, lane, soft, of);
+            case 4:
+                return solve_normals_of<4>(pair, lane, soft, of);
+            default:
+                return solve_normals_of<8>(pair, lane, soft, of);
         }
-        if (pair.sweep.measured) left = larger(left, velocity_left(lane, row.along, change));
-    }
-}
-
-/// There and back in turn, see kNormalPasses: its own adjoint.
-template <class F>
-[[gnu::always_inline]] inline void solve_normals_both_ways(const Lane<F>& lane,
-                                                           const PairSweep<F>& pair, bool soft,
-                                                           PairMotion<F>& of, F& left) {
-    solve_normals(lane, pair, soft, of, left);
-    for (int pass = 1; pass < kNormalPasses; ++pass)
-        solve_normals(lane, pair.another(pass % 2 == 1), soft, of, left);
+    };
+    left = larger(left, solve());
 }
 
 /// The same of friction, across the normal.
@@ -111,9 +110,10 @@ template <class F>
         const Place<F> at = place_of(lane, pair.coloured.rows[k]);
         const LaneVec4<F> old = load(lane, row.impulse);
         const LaneVec4<F> slip = across_at(at, of.motion.across);
+        // Along a direction a normal impulse may have got below 0.
+        const F most = mu * larger(lane.load(pair.coloured.rows[k].along.impulse), F{});
         const LaneVec4<F> all =
-            friction_impulse<F>(lane, row.mass, row.slide_mass, old, slip,
-                                mu * lane.load(pair.coloured.rows[k].along.impulse));
+            friction_impulse<F>(lane, row.mass, row.slide_mass, old, slip, most);
         store(lane, all, row.impulse);
         const LaneVec4<F> change = all - old;
         const std::array<F, 6> seen = seen_from_centre(at, change);
@@ -156,7 +156,7 @@ template <class F>
 [[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  const PairRolling& rolling, PairMotion<F>& of) {
     solve_turning(lane, pair, 1, lane.load(rolling.arm), rolling.rolling_mass, rolling.rolling_step,
-                  pair.frame.response, 0, of.motion.along, of.impulse.along);
+                  rolling.response, 0, of.motion.along, of.impulse.along);
 }
 template <class F>
 [[gnu::always_inline]] inline void solve_twisting(const Lane<F>& lane, const PairSweep<F>& pair,
@@ -171,13 +171,14 @@ template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline void solve_parts(const Lane<F>& lane, const PairSweep<F>& pair,
                                                std::uint32_t index, bool soft, PairMotion<F>& of,
                                                F& left) {
-    solve_normals_both_ways(lane, pair, soft, of, left);
+    solve_normals(lane, pair, soft, of, left);
     if constexpr (kFriction) {
         const PairFriction& friction = pair.coloured.pair_friction[index];
         of.see_along(lane, friction);
         solve_friction(lane, pair, friction, of, left);
         if constexpr (kRolling) {
             const PairRolling& rolling = pair.coloured.pair_rolling[index];
+            add_product(lane, rolling.response, of.impulse.along, of.motion.along);
             of.see_across(lane, friction);
             solve_rolling(lane, pair, rolling, of);
             of.see_along(lane, friction);
@@ -196,7 +197,7 @@ template <bool kFriction, class F>
         solve_friction(lane, pair, friction, of, left);
         of.see_across(lane, friction);
     }
-    solve_normals_both_ways(lane, pair, soft, of, left);
+    solve_normals(lane, pair, soft, of, left);
 }
 
 template <bool kFriction, bool kRolling, bool kUneven, class F>
@@ -205,7 +206,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const PairFrame& pair_frame = coloured.frames[index];
-    LanePair<F, kUneven> bodies(lane, coloured, batch, pair_frame);
+    LanePair<F, kUneven> bodies(lane, coloured, index);
     const Frame<F> frame(load(lane, pair_frame.h));
     const PairSweep<F> pair = {coloured, batch, pair_frame, sweep};
     PairMotion<F> of = {frame.from_world(bodies.motion())};
@@ -245,6 +246,19 @@ double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep
                    : sweep_all<true, false, false>(stage, batches, sweep, lanes);
     return coloured.turns_unevenly ? sweep_all<false, false, true>(stage, batches, sweep, lanes)
                                    : sweep_all<false, false, false>(stage, batches, sweep, lanes);
+}
+
+void take_recalled_general(const ColouredStage& stage, BatchRange batches) {
+    ColouredIslands& coloured = stage.step.coloured;
+    const Lane<Float8> lane;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        PairFrame& pair_frame = coloured.frames[i];
+        const Frame<Float8> frame(load(lane, pair_frame.h));
+        const FrameScrew<Float8> recalled =
+            frame.from_world(LanePair<Float8, false>(lane, coloured, i).motion());
+        add_to(lane, recalled.along, pair_frame.motion);
+        if (coloured.friction) add_to(lane, recalled.across, coloured.pair_friction[i].motion);
+    }
 }
 
 void leave_whirling_general(const ColouredStage& stage, BatchRange batches) {

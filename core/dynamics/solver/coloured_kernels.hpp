@@ -15,8 +15,19 @@ struct ColouredStage {
     StepData& step;
     double mass_unit;  ///< [kg]
     Cause cause;
-    bool friction = true;  ///< false: rows are made without
+    bool friction = true;  ///< false: without
+    bool made = false;     ///< the rows are those of the blow before, but for what they start from
 };
+
+/// A body's inertia times a factor, in float.
+inline BodyInertia packed(const BivectorMap& map, double factor) {
+    BodyInertia inertia;
+    std::size_t k = 0;
+    for (int i = 0; i < 6; ++i)
+        for (int j = i; j < 6; ++j, ++k)
+            inertia.entry[k / 4][k % 4] = static_cast<float>(map(i, j) * factor);
+    return inertia;
+}
 
 // Of round and of general batches: makes their rows and applies the impulses that they start from;
 // one iteration; step.impulses of their contacts, or of a blow step.hit. Batches of one colour may
@@ -26,10 +37,13 @@ void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes
 /// @return the largest velocity_left() [m/s] if it is measured, else 0
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_round(const ColouredStage& stage, BatchRange batches);
+/// What the impulses that the rows start from have changed becomes a part of the start.
+void take_recalled_round(const ColouredStage& stage, BatchRange batches);
 
 void start_general(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
 double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_general(const ColouredStage& stage, BatchRange batches);
+void take_recalled_general(const ColouredStage& stage, BatchRange batches);
 /// Of what whirls() nothing is taken back; bodies that are round on both sides do not.
 void leave_whirling_general(const ColouredStage& stage, BatchRange batches);
 

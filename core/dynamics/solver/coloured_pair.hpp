@@ -12,43 +12,52 @@ namespace tesserae::lanes {
 
 /// What an angular impulse does to each lane's body.
 template <class F, bool kUneven>
-struct Inverse {
-    F scalar;
+class Inverse {
+  public:
+    [[gnu::always_inline]] Inverse(const Lane<F>&, const LaneInertia*, F scalar)
+        : scalar_(scalar) {}
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& moment) const {
-        return scalar * moment;
+        return scalar_ * moment;
     }
+
+  private:
+    F scalar_;
 };
 template <class F>
-struct Inverse<F, true> {
-    std::array<F, 24> e;  ///< as BodyInertia
+class Inverse<F, true> {
+  public:
+    [[gnu::always_inline]] Inverse(const Lane<F>& lane, const LaneInertia* inertia, F)
+        : lane_(lane), inertia_(*inertia) {}
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& m) const {
+        const auto e = [&](std::size_t i) { return lane_.load(inertia_[i]); };
         const auto row = [&](int i0, int i1, int i2, int i3, int i4, int i5) {
-            return fused(e[i0], m[0], fused(e[i1], m[1], e[i2] * m[2])) +
-                   fused(e[i3], m[3], fused(e[i4], m[4], e[i5] * m[5]));
+            return fused(e(i0), m[0], fused(e(i1), m[1], e(i2) * m[2])) +
+                   fused(e(i3), m[3], fused(e(i4), m[4], e(i5) * m[5]));
         };
         return {row(0, 1, 2, 3, 4, 5),     row(1, 6, 7, 8, 9, 10),    row(2, 7, 11, 12, 13, 14),
                 row(3, 8, 12, 15, 16, 17), row(4, 9, 13, 16, 18, 19), row(5, 10, 14, 17, 19, 20)};
     }
+
+  private:
+    const Lane<F>& lane_;
+    const LaneInertia& inertia_;
 };
 
-template <bool kUneven, class F>
-[[gnu::always_inline]] inline Inverse<F, kUneven> inverse_of(
-    const Lane<F>& lane, const ColouredIslands& coloured,
-    const std::array<std::uint32_t, kLanes>& places, const Motion<F>& motion) {
-    Inverse<F, kUneven> inverse;
-    if constexpr (kUneven) {
-        for (std::size_t part = 0; part < 6; ++part) {
-            std::array<const float*, Lane<F>::count> from;
-            for (std::size_t i = 0; i < from.size(); ++i)
-                from[i] = coloured.inertias[places[lane.first + i]].entry[part].data();
-            std::array<F, 4> four;
-            load_four(from, four);
-            for (std::size_t i = 0; i < 4; ++i) inverse.e[4 * part + i] = four[i];
-        }
-    } else {
-        inverse.scalar = motion.inverse_inertia;
+/// The bodies' inverse inertias side by side: sweeps then need not look for them.
+template <class F>
+[[gnu::always_inline]] inline void gather_inertias(const Lane<F>& lane,
+                                                   const std::vector<BodyInertia>& inertias,
+                                                   const std::array<std::uint32_t, kLanes>& places,
+                                                   LaneInertia& to) {
+    for (std::size_t part = 0; part < 6; ++part) {
+        std::array<const float*, Lane<F>::count> from;
+        for (std::size_t i = 0; i < from.size(); ++i)
+            from[i] = inertias[places[lane.first + i]].entry[part].data();
+        std::array<F, 4> four;
+        load_four(from, four);
+        for (std::size_t i = 0; i < 4 && 4 * part + i < to.size(); ++i)
+            lane.store(four[i], to[4 * part + i]);
     }
-    return inverse;
 }
 
 /// In world axes, of b against a at a pair's centre: a motion, or an impulse and its moment.
@@ -98,14 +107,14 @@ struct Frame {
 template <class F, bool kUneven>
 class LanePair {
   public:
+    /// @param index   of the batch, whose frame is made
     [[gnu::always_inline]] LanePair(const Lane<F>& lane, ColouredIslands& coloured,
-                                    const Batch& batch, const PairFrame& frame)
+                                    std::uint32_t index)
         : lane_(lane),
-          coloured_(coloured),
-          batch_(batch),
-          frame_(frame),
-          bodies_a_(lane, coloured.changes.data(), batch.a),
-          bodies_b_(lane, coloured.changes.data(), batch.b),
+          frame_(coloured.frames[index]),
+          inertia_(kUneven ? &coloured.pair_inertias[index] : nullptr),
+          bodies_a_(lane, coloured.changes.data(), coloured.general[index].a),
+          bodies_b_(lane, coloured.changes.data(), coloured.general[index].b),
           a_(bodies_a_.template load<true>()),
           b_(bodies_b_.template load<true>()) {}
 
@@ -131,18 +140,17 @@ class LanePair {
     [[gnu::always_inline]] LaneVec4<F> centre_a() const { return load(lane_, frame_.centre_a); }
     [[gnu::always_inline]] LaneVec4<F> centre_b() const { return load(lane_, frame_.centre_b); }
     [[gnu::always_inline]] Inverse<F, kUneven> inverse_a() const {
-        return inverse_of<kUneven>(lane_, coloured_, batch_.a, a_);
+        return {lane_, kUneven ? &inertia_->a : nullptr, a_.inverse_inertia};
     }
     [[gnu::always_inline]] Inverse<F, kUneven> inverse_b() const {
-        return inverse_of<kUneven>(lane_, coloured_, batch_.b, b_);
+        return {lane_, kUneven ? &inertia_->b : nullptr, b_.inverse_inertia};
     }
     [[gnu::always_inline]] F inverse_mass() const { return a_.inverse_mass + b_.inverse_mass; }
 
   private:
     const Lane<F>& lane_;
-    const ColouredIslands& coloured_;
-    const Batch& batch_;
     const PairFrame& frame_;
+    const PairInertia* const inertia_;
     LaneBodies<F> bodies_a_, bodies_b_;
     Motion<F> a_, b_;
 };

@@ -59,6 +59,12 @@ template <class F, std::size_t kSize>
     for (std::size_t i = 0; i < kSize; ++i) lane.store(x[i], to[i]);
 }
 
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline void add_to(const Lane<F>& lane, const std::array<F, kSize>& x,
+                                          std::array<Eight, kSize>& to) {
+    for (std::size_t i = 0; i < kSize; ++i) lane.store(lane.load(to[i]) + x[i], to[i]);
+}
+
 /// to += k x
 template <class F, std::size_t kSize>
 [[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,

@@ -101,16 +101,15 @@ inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index,
 
 /// In the midst of a pair's points, as high along the normal as the deepest.
 inline Vec4 centre_of(const StepData& step, std::uint32_t first, std::size_t count) {
-    const Contact contact = step.contacts[first];
-    Vec4 sum = contact.point, deepest = contact.point;
-    double least = contact.separation;
+    const ContactList& contacts = step.contacts;
+    Vec4 sum = contacts.point(first);
+    std::uint32_t deepest = first;
     for (std::uint32_t i = first + 1; i < first + count; ++i) {
-        const Contact c = step.contacts[i];
-        sum += c.point;
-        if (c.separation < least) least = c.separation, deepest = c.point;
+        sum += Vec4(contacts.point(i));
+        if (contacts.separation(i) < contacts.separation(deepest)) deepest = i;
     }
-    const Vec4 mean = sum / static_cast<double>(count);
-    return mean + contact.normal.dot(deepest - mean) * contact.normal;
+    const Vec4 mean = sum / static_cast<double>(count), normal = contacts.normal(first);
+    return mean + normal.dot(contacts.point(deepest) - mean) * normal;
 }
 
 /// As put_point(), of a pair with so many contacts from `first` on.
@@ -136,13 +135,12 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);
     for (std::uint32_t p = 0; p < count; ++p) {
         EightPairs::Points& point = pairs.points[p];
-        const Contact c = step.contacts[first + p];
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
-        const Vec4 place = c.point - centre;
+        const Vec4 place = step.contacts.point(first + p) - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
-        const ContactTargets targets = targets_of.at(c.separation, along);
+        const ContactTargets targets = targets_of.at(step.contacts.separation(first + p), along);
         put(place, point.place[lane]);
         put(per_mass_unit * impulse.tangent, point.impulse[lane]);
         put({targets.solve, targets.relax, targets.keep, per_mass_unit * impulse.normal},
@@ -159,22 +157,24 @@ template <class F>
     return v;
 }
 
-/// @param fours      target, relax target, keep, normal impulse
+/// @param keep       NormalPass::keep; 0 of points that a lane does not have, which keep nothing
 /// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
+template <class F>
+[[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F keep, F response, F least,
+                                               NormalRow& row) {
+    const F inverse = (F{} + 1.0f) / response;
+    lane.store(response > least ? (keep > F{} ? inverse : F{}) : F{}, row.mass);
+}
+/// @param fours   target, relax target, keep, normal impulse
 /// @return the impulse to start from
 template <class F>
-[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const Fours& fours, F response,
-                                             F least, NormalRow& row) {
-    const LaneVec4<F> along = load(lane, fours);
-    // Points that a lane does not have keep nothing.
-    const F inverse = (F{} + 1.0f) / response;
-    const F mass = response > least ? (along[2] > F{} ? inverse : F{}) : F{};
-    lane.store(mass, row.mass);
-    lane.store(along[0], row.target);
-    lane.store(along[1], row.relax_target);
-    lane.store(along[2], row.keep);
-    lane.store(along[3], row.impulse);
-    return along[3];
+[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
+                                             NormalRow& row) {
+    lane.store(fours[0], row.target);
+    lane.store(fours[1], row.relax_target);
+    lane.store(fours[2], row.keep);
+    lane.store(fours[3], row.impulse);
+    return fours[3];
 }
 
 /// One step of a normal impulse at the change v of the normal velocity.
@@ -185,11 +185,12 @@ template <class F>
     const bool relax = pass == Pass::kRelax;
     const F old = lane.load(row.impulse);
     const F target = lane.load(relax ? row.relax_target : row.target);
-    impulse = fused(lane.load(row.mass), target - v, old);
-    if (soft && !relax) impulse = lane.load(row.keep) * impulse;
-    impulse = larger(impulse, F{});
+    F change = lane.load(row.mass) * (target - v);
+    if (soft && !relax) change = lane.load(row.keep) * (old + change) - old;
+    change = larger(change, -old);  // sooner there than by the impulse
+    impulse = old + change;
     lane.store(impulse, row.impulse);
-    return impulse - old;
+    return change;
 }
 
 /// The nearest of length at most `most`; zero stays zero.

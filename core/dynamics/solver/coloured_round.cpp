@@ -71,7 +71,9 @@ template <bool kFriction, bool kRolling, class F>
 
     RoundRow& row = coloured.round_rows[batch];
     store(lane, n, row.normal);
-    const F normal_impulse = start_normal(lane, points.along, response, F{}, row.along);
+    const LaneVec4<F> along = load(lane, points.along);
+    make_normal(lane, along[2], response, F{}, row.along);
+    const F normal_impulse = start_normal(lane, along, row.along);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -97,6 +99,18 @@ template <bool kFriction, bool kRolling, class F>
     bodies_b.template store<kFriction>(b);
 }
 
+/// What the bodies' changes are of the slip.
+/// @param v, along   of b against a, and along the normal
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> slip_of(const Lane<F>& lane, const LaneVec4<F>& n,
+                                                  const LaneVec4<F>& v, F along,
+                                                  const RoundFriction& friction, const Motion<F>& a,
+                                                  const Motion<F>& b) {
+    const LaneBivector<F> w = lane.load(friction.arm_a) * a.angular_velocity +
+                              lane.load(friction.arm_b) * b.angular_velocity;
+    return sum(v, -along, n) - velocity_at(w, n);
+}
+
 /// The normal first and then friction, as solve_row() does: the response is the same along every
 /// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
 /// Neither changes what the other sees, so that without rolling this is its own adjoint.
@@ -119,9 +133,8 @@ template <bool kFriction, bool kRolling, class F>
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
         const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
-        const LaneBivector<F> w = arm_a * a.angular_velocity + arm_b * b.angular_velocity;
         const LaneVec4<F> slip =
-            load(lane, friction.slip) + (sum(v, -along, n) - velocity_at(w, n));
+            load(lane, friction.slip) + slip_of(lane, n, v, along, friction, a, b);
         const LaneVec4<F> old = load(lane, friction.impulse);
         const LaneVec4<F> tangent = clamped<F>(sum(old, -lane.load(friction.mass), slip),
                                                lane.load(friction.friction) * normal_impulse);
@@ -192,6 +205,26 @@ double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, 
     if (coloured.rolling) return sweep_all<true, true>(stage, batches, sweep, lanes);
     return coloured.friction ? sweep_all<true, false>(stage, batches, sweep, lanes)
                              : sweep_all<false, false>(stage, batches, sweep, lanes);
+}
+
+void take_recalled_round(const ColouredStage& stage, BatchRange batches) {
+    ColouredIslands& coloured = stage.step.coloured;
+    const Lane<Float8> lane;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        const Batch& batch = coloured.round[i];
+        const auto a = LaneBodies<Float8>(lane, coloured.changes.data(), batch.a).load<true>();
+        const auto b = LaneBodies<Float8>(lane, coloured.changes.data(), batch.b).load<true>();
+        const LaneVec4<Float8> n = load(lane, coloured.round_rows[i].normal);
+        const LaneVec4<Float8> v = b.velocity - a.velocity;
+        const Float8 along = dot(n, v);
+        NormalRow& row = coloured.round_rows[i].along;
+        lane.store(lane.load(row.target) - along, row.target);
+        lane.store(lane.load(row.relax_target) - along, row.relax_target);
+        if (!coloured.friction) continue;
+        RoundFriction& friction = coloured.round_friction[i];
+        const LaneVec4<Float8> slip = slip_of(lane, n, v, along, friction, a, b);
+        store(lane, load(lane, friction.slip) + slip, friction.slip);
+    }
 }
 
 void keep_round(const ColouredStage& stage, BatchRange batches) {

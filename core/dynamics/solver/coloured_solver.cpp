@@ -3,15 +3,6 @@
 namespace tesserae {
 namespace {
 
-BodyInertia packed(const BivectorMap& map, double mass_unit) {
-    BodyInertia inertia;
-    std::size_t k = 0;
-    for (int i = 0; i < 6; ++i)
-        for (int j = i; j < 6; ++j, ++k)
-            inertia.entry[k / 4][k % 4] = static_cast<float>(map(i, j) * mass_unit);
-    return inertia;
-}
-
 /// Of a body that is isotropic, in a scene where others are not.
 BodyInertia packed(double inverse) {
     BodyInertia inertia;
@@ -41,10 +32,10 @@ void begin_changes(const ColouredStage& stage, Range bodies) {
         coloured.changes[i] = {};
         coloured.changes[i].rest[2] = static_cast<float>(type.inverse_mass * stage.mass_unit);
         coloured.changes[i].rest[3] = static_cast<float>(inverse);
-        if (!coloured.turns_unevenly) continue;
-        coloured.inertias[i] = type.isotropic
-                                   ? packed(inverse)
-                                   : packed(stage.step.inverse_inertia[id], stage.mass_unit);
+        if (!coloured.turns_unevenly || stage.made) continue;
+        coloured.inverse_inertias[i] =
+            type.isotropic ? packed(inverse)
+                           : packed(stage.step.inverse_inertia[id], stage.mass_unit);
     }
 }
 
@@ -71,6 +62,16 @@ bool has_jammed(const ColouredStage& stage, Range bodies) {
             motion + BodyMotion{velocity_change(change), angular_change(change)});
     }
     return has_jammed(before, after);
+}
+
+void add_recalled(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        step.velocity[id] += velocity_change(step.coloured.recalled[i]);
+        if (stage.simulation.needs.turning)
+            step.angular_velocity[id] += angular_change(step.coloured.recalled[i]);
+    }
 }
 
 void add_changes(const ColouredStage& stage, Range bodies) {

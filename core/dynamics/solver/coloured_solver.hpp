@@ -45,6 +45,8 @@ void keep_blow_motion(const ColouredStage& stage, Range bodies);
 bool has_jammed(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
+/// What take_recalled() took.
+void add_recalled(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
 /// velocity, as if by an impulse.
 void take_changes_back(const ColouredStage& stage, Range bodies);
@@ -60,7 +62,8 @@ class ColouredIsland {
                    bool friction = true)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step, all_.mass_unit[place_], cause, friction} {}
+          stage_{simulation, step,     all_.mass_unit[place_],
+                 cause,      friction, step.has_rows[island] != 0} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
@@ -105,9 +108,18 @@ class ConjugateDirections {
   public:
     ConjugateDirections(const ColouredIsland& island, const Threads& threads)
         : island_(island), threads_(threads) {
-        for_bodies([](auto... of) { begin_weights(of...); });
+        const ColouredStage& stage = island.stage();
+        for_rows([&](BatchRange some) { take_recalled_round(stage, some); },
+                 [&](BatchRange some) { take_recalled_general(stage, some); });
+        for_bodies([](auto... of) { take_recalled(of...); });
+        for (std::size_t i = island.bodies().begin; i < island.bodies().end; ++i)
+            rounding_ += kFloatStep * kFloatStep * stage.step.coloured.body_sums[i][0];
         for_bodies([](auto... of) { begin_directions(of...); });
         begin_rows();
+    }
+    /// After the last pair.
+    void end() const {
+        for_bodies([](auto... of) { add_recalled(of...); });
     }
     /// The direction after a pair of sweeps.
     /// @return the largest change of a body's velocity by a step along it [m/s]
@@ -119,7 +131,7 @@ class ConjugateDirections {
         Sums sums = {};  // r.z, r.p_last and the energy
         for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
             for (std::size_t k = 0; k < 3; ++k) sums[k] += stage.step.coloured.body_sums[i][k];
-        const double rounding = kFloatStep * kFloatStep * sums[2];
+        rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
         const Sums of_rows = work();
         for (std::size_t k = 0; k < 3; ++k) sums[k] += of_rows[k];
         const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
@@ -133,11 +145,14 @@ class ConjugateDirections {
             fastest = std::max(fastest, stage.step.coloured.body_sums[i][1]);
         }
         const double length = (sums[0] + carried_ * sums[1]) / twice_energy;
-        holds_ = plain_ == 0 && length > 1 && sums[0] > rounding;
+        holds_ = plain_ == 0 && length > 1 && sums[0] > rounding_;
         length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
         slope_ = sums[0];
+        steepest_ = std::max(steepest_, std::abs(slope_));
         return length_ * std::sqrt(fastest);
     }
+    /// Whether the last pair took a part of the energy for which it is worth to go on.
+    bool pays() const { return std::abs(slope_) > kLeastSlope * steepest_; }
     /// From there on to the next pair.
     void go_on() {
         const ColouredStage& stage = island_.stage();
@@ -154,8 +169,9 @@ class ConjugateDirections {
 
   private:
     using Sums = std::array<double, 3>;
-    /// What is changed by less than this part of all is rounding, of which directions would grow.
-    static constexpr double kFloatStep = 1e-5;
+    /// What is changed by less than this part of what is recalled, or has been changed, is
+    /// rounding, of which directions would grow.
+    static constexpr double kFloatStep = 1e-6;
 
     /// After a step along a direction that led away from the solution there are none for a while.
     /// @param ratio   of r.z to that before the step
@@ -199,9 +215,10 @@ class ConjugateDirections {
 
     const ColouredIsland& island_;
     const Threads& threads_;
-    double slope_ = 0, last_slope_ = 0;  ///< r.z
-    double last_energy_ = 0;             ///< at the end of the last pair
-    int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time
+    double slope_ = 0, last_slope_ = 0, steepest_ = 0;  ///< r.z
+    double last_energy_ = 0;                            ///< at the end of the last pair
+    double rounding_ = 0;                               ///< of a slope
+    int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
     float carried_ = 0, length_ = 1;
     bool holds_ = false;  ///< the direction
 };
@@ -240,12 +257,14 @@ double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& e
 }
 
 /// A load by conjugate directions. It ends once neither a row's velocity nor, by the next step, a
-/// body's changes by more than the tolerance: what all of a wall does together no row sees.
+/// body's changes by more than the tolerance: what all of a wall does together no row sees. After a
+/// blow it also ends once a pair does not pay.
 /// @return the residual of the last iteration [m/s]
 template <class Threads>
 double iterate_along_conjugates(const ColouredIsland& island, const Effort& effort,
                                 const Threads& threads, LaneCount lanes) {
     std::optional<ConjugateDirections<Threads>> directions;
+    const bool after_blow = island.stage().made;
     double residual = 0;
     for (int i = 0; i < effort.sweeps; ++i) {
         Sweep sweep = sweep_of(Pass::kSolve, effort, i);
@@ -255,8 +274,10 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
         residual = sweep_coloured(island, sweep, threads, lanes);
         if (sweep.backward || !directions || i + 1 == effort.sweeps) continue;
         const double left = std::max(residual, directions->find());
-        if (i + 1 >= kLeastSweeps && sweep.measured && left <= effort.enough) break;
+        const bool goes_on = left > effort.enough && (!after_blow || directions->pays());
+        if (i + 1 >= kLeastSweeps && effort.enough >= 0 && !goes_on) break;
     }
+    if (directions) directions->end();
     return residual;
 }
 
@@ -308,6 +329,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     const Effort effort = effort_of_large_blow(simulation, blow.fastest);
     const Range range = coloured.bodies();
     compress_coloured(coloured, effort, threads, lanes);
+    step.has_rows[island] = 1;
     if (can_jam(simulation, blow) && has_jammed(stage, range))
         compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), effort,
                           threads, lanes);

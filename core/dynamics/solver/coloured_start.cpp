@@ -8,18 +8,15 @@ namespace {
 
 using namespace lanes;
 
-/// A pair's responses, and its motion at the start.
+/// A pair's responses.
 /// @param turns   else its one point is the centre, where impulses do not turn
+/// @param along   its response to impulses along the normal
 template <bool kFriction, class F, bool kUneven>
-[[gnu::always_inline]] inline void start_frame(const Lane<F>& lane,
-                                               const LanePair<F, kUneven>& pair,
-                                               const Frame<F>& frame, const Screw<F>& motion,
-                                               bool turns, PairFrame& pair_frame,
-                                               PairFriction* friction) {
+[[gnu::always_inline]] inline void make_frame(const Lane<F>& lane, const LanePair<F, kUneven>& pair,
+                                              const Frame<F>& frame, bool turns,
+                                              std::array<Eight, 10>& along,
+                                              PairFriction* friction) {
     const F one = F{} + 1.0f;
-    const FrameScrew<F> start = frame.from_world(motion);
-    store_all(lane, start.along, pair_frame.motion);
-    if constexpr (kFriction) store_all(lane, start.across, friction->motion);
     const Response<F, kUneven> response(pair);
     for (std::size_t i = 0; i < 4; ++i) {
         FrameScrew<F> unit{};
@@ -27,8 +24,7 @@ template <bool kFriction, class F, bool kUneven>
             unit.along[i] = one;
             unit = frame.from_world(response(frame.to_world(unit)));
         }
-        for (std::size_t j = i; j < 4; ++j)
-            lane.store(unit.along[j], pair_frame.response[in_triangle<4>(i, j)]);
+        for (std::size_t j = i; j < 4; ++j) lane.store(unit.along[j], along[in_triangle<4>(i, j)]);
         if constexpr (kFriction) store_all(lane, unit.across, friction->coupled[i]);
     }
     if constexpr (kFriction)
@@ -46,10 +42,10 @@ template <bool kFriction, class F, bool kUneven>
 /// The masses of rolling or twisting: of a block of three of a response.
 /// @param first   of its rows
 template <std::size_t kSize, class F, std::size_t kEntries>
-[[gnu::always_inline]] inline void start_turning(const Lane<F>& lane,
-                                                 const std::array<Eight, kEntries>& response,
-                                                 std::size_t first, std::array<Eight, 6>& mass,
-                                                 Eight& step_mass) {
+[[gnu::always_inline]] inline void make_turning(const Lane<F>& lane,
+                                                const std::array<Eight, kEntries>& response,
+                                                std::size_t first, std::array<Eight, 6>& mass,
+                                                Eight& step_mass) {
     const auto entry = [&](std::size_t i, std::size_t j) {
         return lane.load(response[in_triangle<kSize>(first + i, first + j)]);
     };
@@ -95,9 +91,29 @@ template <class F>
     return {K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]};
 }
 
+/// What a unit impulse at a point does at those before it and at itself.
+/// @param motion   what it changes of the motion along the normal
+template <class F>
+[[gnu::always_inline]] inline void store_responses(const Lane<F>& lane, ColouredIslands& coloured,
+                                                   const Batch& batch, std::uint32_t point,
+                                                   const std::array<F, 4>& motion) {
+    Eight* const row = &coloured.point_response[batch.response + point * (point + 1) / 2];
+    for (std::uint32_t k = 0; k <= point; ++k)
+        lane.store(along_at(place_of(lane, coloured.rows[batch.row + k]), motion), row[k]);
+}
+/// Of the points that the batch does not have.
+template <class F>
+[[gnu::always_inline]] inline void store_padding(const Lane<F>& lane, ColouredIslands& coloured,
+                                                 const Batch& batch) {
+    Eight* const first = &coloured.point_response[batch.response];
+    for (std::uint32_t k = batch.rows * (batch.rows + 1) / 2; k < responses_of(batch.rows); ++k)
+        lane.store(F{}, first[k]);
+}
+
+/// What depends on where the bodies are: the same for a blow and for the load after it.
 template <bool kFriction, bool kRolling, bool kUneven, class F>
-[[gnu::always_inline]] inline void start_points(const ColouredStage& stage, const Lane<F>& lane,
-                                                std::uint32_t index, const EightPairs& pairs) {
+[[gnu::always_inline]] inline void make_points(const ColouredStage& stage, const Lane<F>& lane,
+                                               std::uint32_t index, const EightPairs& pairs) {
     ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     PairFrame& pair_frame = coloured.frames[index];
@@ -110,22 +126,22 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     store(lane, frame.h, pair_frame.h);
     store(lane, load(lane, pairs.centre_a), pair_frame.centre_a);
     store(lane, load(lane, pairs.centre_b), pair_frame.centre_b);
-    LanePair<F, kUneven> pair(lane, coloured, batch, pair_frame);
+    if constexpr (kUneven) {
+        PairInertia& inertia = coloured.pair_inertias[index];
+        gather_inertias(lane, coloured.inverse_inertias, batch.a, inertia.a);
+        gather_inertias(lane, coloured.inverse_inertias, batch.b, inertia.b);
+    }
+    const LanePair<F, kUneven> pair(lane, coloured, index);
     PairFriction* friction = kFriction ? &coloured.pair_friction[index] : nullptr;
-    start_frame<kFriction>(lane, pair, frame,
-                           {load(lane, pairs.velocity), load(lane, pairs.turning)},
-                           batch.rows > 1 || kRolling, pair_frame, friction);
-    F arm{};
+    std::array<Eight, 10> response;
+    make_frame<kFriction>(lane, pair, frame, batch.rows > 1 || kRolling, response, friction);
     if constexpr (kRolling) {
         PairRolling& rolling = coloured.pair_rolling[index];
-        start_turning<4, F>(lane, pair_frame.response, 1, rolling.rolling_mass,
-                            rolling.rolling_step);
-        start_turning<6, F>(lane, friction->response, 3, rolling.twisting_mass,
-                            rolling.twisting_step);
-        arm = lane.load(rolling.arm);
+        store_all(lane, load_all(lane, response), rolling.response);
+        make_turning<4, F>(lane, response, 1, rolling.rolling_mass, rolling.rolling_step);
+        make_turning<6, F>(lane, friction->response, 3, rolling.twisting_mass,
+                           rolling.twisting_step);
     }
-
-    FrameScrew<F> impulse{};
     for (std::uint32_t k = 0; k < batch.rows; ++k) {
         GeneralRow& row = coloured.rows[batch.row + k];
         const LaneVec4<F> r = frame.reflected(load(lane, pairs.points[k].place));
@@ -133,11 +149,10 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         store_all(lane, at, row.at);
         const std::array<F, 4> unit = {one, at[0], at[1], at[2]};
         std::array<F, 4> change{};
-        add_product(lane, pair_frame.response, unit, change);
-        const F normal_impulse =
-            start_normal(lane, pairs.points[k].along, along_at(at, change), least, row.along);
-        for (std::size_t i = 0; i < 4; ++i)
-            impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);
+        add_product(lane, response, unit, change);
+        store_responses(lane, coloured, batch, k, change);
+        make_normal(lane, load(lane, pairs.points[k].along)[2], along_at(at, change), least,
+                    row.along);
         if constexpr (kFriction) {
             GeneralFriction& tangents = coloured.general_friction[batch.row + k];
             std::array<F, 6> inverse;
@@ -145,18 +160,47 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
             invert<F>(tangent_response(lane, *friction, at), least, inverse, slide);
             store_all(lane, inverse, tangents.mass);
             lane.store(slide, tangents.slide_mass);
+        }
+    }
+    store_padding(lane, coloured, batch);
+}
+
+/// What depends on how they move, and the impulses to start from.
+template <bool kFriction, bool kRolling, bool kUneven, class F>
+[[gnu::always_inline]] inline void start_points(const ColouredStage& stage, const Lane<F>& lane,
+                                                std::uint32_t index, const EightPairs& pairs) {
+    ColouredIslands& coloured = stage.step.coloured;
+    const Batch& batch = coloured.general[index];
+    PairFrame& pair_frame = coloured.frames[index];
+    const Frame<F> frame(load(lane, pair_frame.h));
+    const FrameScrew<F> motion =
+        frame.from_world({load(lane, pairs.velocity), load(lane, pairs.turning)});
+    store_all(lane, motion.along, pair_frame.motion);
+    if constexpr (kFriction) store_all(lane, motion.across, coloured.pair_friction[index].motion);
+
+    FrameScrew<F> impulse{};
+    for (std::uint32_t k = 0; k < batch.rows; ++k) {
+        GeneralRow& row = coloured.rows[batch.row + k];
+        const Place<F> at = place_of(lane, row);
+        const F normal_impulse = start_normal(lane, load(lane, pairs.points[k].along), row.along);
+        const std::array<F, 4> unit = {F{} + 1.0f, at[0], at[1], at[2]};
+        for (std::size_t i = 0; i < 4; ++i)
+            impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);
+        if constexpr (kFriction) {
             // The normal may have turned since the impulse was.
             LaneVec4<F> tangent = frame.reflected(load(lane, pairs.points[k].impulse));
             tangent[3] = F{};
-            tangent = clamped<F>(tangent, lane.load(friction->friction) * normal_impulse);
-            store(lane, tangent, tangents.impulse);
+            const F most = lane.load(coloured.pair_friction[index].friction) * normal_impulse;
+            tangent = clamped<F>(tangent, most);
+            store(lane, tangent, coloured.general_friction[batch.row + k].impulse);
             add(seen_from_centre(at, tangent), impulse.across);
         }
         if constexpr (kRolling)
-            start_point_rolling(lane, frame, arm * normal_impulse,
+            start_point_rolling(lane, frame,
+                                lane.load(coloured.pair_rolling[index].arm) * normal_impulse,
                                 coloured.general_rolling[batch.row + k], impulse);
     }
-    pair.apply(frame.to_world(impulse));
+    LanePair<F, kUneven>(lane, coloured, index).apply(frame.to_world(impulse));
 }
 
 template <bool kFriction, bool kRolling, bool kUneven>
@@ -167,7 +211,7 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
         EightPairs pairs;
         if constexpr (kFriction) coloured.pair_friction[i].friction = {};
         if constexpr (kRolling) {
-            coloured.pair_rolling[i] = {};
+            coloured.pair_rolling[i].arm = {};
             std::fill_n(&coloured.general_rolling[batch.row], batch.rows, GeneralRolling{});
         }
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
@@ -183,6 +227,7 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
             }
         }
         for_lanes({i, i + 1}, lanes, false, [&](const auto& lane, std::uint32_t) {
+            if (!stage.made) make_points<kFriction, kRolling, kUneven>(stage, lane, i, pairs);
             start_points<kFriction, kRolling, kUneven>(stage, lane, i, pairs);
         });
     }

@@ -1,9 +1,9 @@
 #include "core/dynamics/solver/conjugate.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/dynamics/solver/coloured_place.hpp"
+#include "core/dynamics/state/type_properties.hpp"
 
 namespace tesserae {
 namespace {
@@ -35,15 +35,17 @@ void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& v
 }
 
 /// Keeps impulses where they are, without a direction.
-auto begin(std::vector<Eight>& last, std::vector<Eight>& direction) {
-    return [&](const Eight& impulse, std::size_t place) {
+auto begin(std::vector<Eight>& lasts, std::vector<Eight>& directions) {
+    return [last = lasts.data(), direction = directions.data()](const Eight& impulse,
+                                                                std::size_t place) {
         last[place] = impulse;
         direction[place] = {};
     };
 }
 /// Eight impulses go from where they were along the new direction.
-auto go(std::vector<Eight>& last, std::vector<Eight>& direction, float carried, float length) {
-    return [&, carried, length](Eight& impulse, std::size_t place) {
+auto go(std::vector<Eight>& lasts, std::vector<Eight>& directions, float carried, float length) {
+    return [last = lasts.data(), direction = directions.data(), carried, length](
+               Eight& impulse, std::size_t place) {
         const Float8 from = kAll.load(last[place]);
         const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction[place]);
         const Float8 here = from + length * along;
@@ -91,52 +93,67 @@ void add_row(const ColouredIslands& coloured, std::uint32_t index, std::uint32_t
     for (std::size_t i = 0; i < 3; ++i) work.add(tangent[i], slip[i]);
 }
 
-/// What contacts change of a body's motion, so weighted that products are of energies.
-WeightedMotion weighted(const ColouredStage& stage, BodyId id, const BodyMotion& motion) {
-    const TypeProperties& type = stage.simulation.type_of(id);
-    const double per_mass_unit = 1 / stage.mass_unit;
-    const auto root = [&](double inverse) {
-        return inverse > 0 ? std::sqrt(per_mass_unit / inverse) : 0;
+using simd::Float4;
+/// A body's record as three vectors of four.
+using Twelve = std::array<Float4, 3>;
+
+template <class Record>
+[[gnu::always_inline]] inline Twelve load(const Record& record) {
+    return {simd::same_bits<Float4>(record.velocity), simd::same_bits<Float4>(record.first_planes),
+            simd::same_bits<Float4>(record.rest)};
+}
+template <class Record>
+[[gnu::always_inline]] inline void store(const Twelve& x, Record& record) {
+    using Four = std::array<float, 4>;
+    record.velocity = simd::same_bits<Four>(x[0]);
+    record.first_planes = simd::same_bits<Four>(x[1]);
+    record.rest = simd::same_bits<Four>(x[2]);
+}
+[[gnu::always_inline]] inline Twelve operator+(const Twelve& a, const Twelve& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+[[gnu::always_inline]] inline Twelve operator-(const Twelve& a, const Twelve& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+[[gnu::always_inline]] inline Twelve operator*(float k, const Twelve& a) {
+    return {k * a[0], k * a[1], k * a[2]};
+}
+[[gnu::always_inline]] inline double product(const Twelve& a, const Twelve& b) {
+    const Float4 sums = a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
+    return (double{sums[0]} + sums[1]) + (double{sums[2]} + sums[3]);
+}
+
+/// A symmetric 6x6 matrix times the turning part of x.
+[[gnu::always_inline]] inline void turn(const BodyInertia& inertia, const Twelve& x, Twelve& to) {
+    const auto& e = inertia.entry;
+    const Float4 &w = x[1], &v = x[2];
+    const auto row = [&](float e0, float e1, float e2, float e3, float e4, float e5) {
+        return ((e0 * w[0] + e1 * w[1]) + (e2 * w[2] + e3 * w[3])) + (e4 * v[0] + e5 * v[1]);
     };
-    WeightedMotion all{};
-    for (int i = 0; i < 4; ++i)
-        all[static_cast<std::size_t>(i)] =
-            static_cast<float>(root(type.inverse_mass) * motion.velocity[i]);
-    if (!stage.simulation.needs.turning) return all;
-    Bivector w = motion.angular_velocity;
-    if (!type.isotropic) w = rotate(reverse(principal_rotor(type, stage.step.rotor[id])), w);
-    const Bivector& inverse = type.inverse_inertia;
-    all[4] = static_cast<float>(root(inverse.xy) * w.xy);
-    all[5] = static_cast<float>(root(inverse.xz) * w.xz);
-    all[6] = static_cast<float>(root(inverse.xw) * w.xw);
-    all[7] = static_cast<float>(root(inverse.yz) * w.yz);
-    all[8] = static_cast<float>(root(inverse.yw) * w.yw);
-    all[9] = static_cast<float>(root(inverse.zw) * w.zw);
-    return all;
+    to[1] = Float4{row(e[0][0], e[0][1], e[0][2], e[0][3], e[1][0], e[1][1]),
+                   row(e[0][1], e[1][2], e[1][3], e[2][0], e[2][1], e[2][2]),
+                   row(e[0][2], e[1][3], e[2][3], e[3][0], e[3][1], e[3][2]),
+                   row(e[0][3], e[2][0], e[3][0], e[3][3], e[4][0], e[4][1])};
+    to[2] = Float4{row(e[1][0], e[2][1], e[3][1], e[4][0], e[4][2], e[4][3]),
+                   row(e[1][1], e[2][2], e[3][2], e[4][1], e[4][3], e[5][0]), 0, 0};
 }
 
-double product(const WeightedMotion& a, const WeightedMotion& b) {
-    float sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-    return sum;
+/// The momentum of a change of the motion of a body in `bodies`.
+[[gnu::always_inline]] inline Twelve momentum_of(const ColouredIslands& coloured, std::size_t body,
+                                                 const Twelve& change) {
+    const std::array<float, 4>& rest = coloured.changes[body].rest;
+    const auto inverse_of = [](float inverse) { return inverse > 0 ? 1 / inverse : 0; };
+    const float inertia = inverse_of(rest[3]);
+    Twelve momentum = {inverse_of(rest[2]) * change[0], inertia * change[1], inertia * change[2]};
+    if (coloured.turns_unevenly && rest[3] == 0) turn(coloured.inertias[body], change, momentum);
+    return momentum;
 }
 
-/// Calls visit(float of each record...) for a body's velocity and for what it turns by.
-template <class Visit, class... Record>
-void visit_motion(const Visit& visit, Record&... records) {
-    for (std::size_t i = 0; i < 4; ++i) visit(records.velocity[i]...);
-    for (std::size_t i = 0; i < 4; ++i) visit(records.first_planes[i]...);
-    for (std::size_t i = 0; i < 2; ++i) visit(records.rest[i]...);
-}
-
-BodyMotion difference(const BodyChange& a, const BodyChange& b) {
-    const auto part = [](const auto& x, const auto& y, std::size_t i) {
-        return double{x[i] - y[i]};
-    };
-    const auto &v = a.velocity, &u = b.velocity, &w = a.first_planes, &t = b.first_planes;
-    return {assembled(part(v, u, 0), part(v, u, 1), part(v, u, 2), part(v, u, 3)),
-            {part(w, t, 0), part(w, t, 1), part(w, t, 2), part(w, t, 3), part(a.rest, b.rest, 0),
-             part(a.rest, b.rest, 1)}};
+/// Without the masses in a record of changes.
+[[gnu::always_inline]] inline Twelve change_of(const BodyChange& record) {
+    Twelve change = load(record);
+    change[2][2] = change[2][3] = 0;
+    return change;
 }
 
 }  // namespace
@@ -149,11 +166,24 @@ bool has_conjugates(const Simulation& simulation) {
                });
 }
 
-void begin_weights(const ColouredStage& stage, Range bodies) {
+void take_recalled(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        coloured.weighted_motion[i] =
-            weighted(stage, coloured.bodies[i], difference(coloured.changes[i], BodyChange{}));
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = coloured.bodies[i];
+        const TypeProperties& type = stage.simulation.type_of(id);
+        if (coloured.turns_unevenly)
+            coloured.inertias[i] = type.isotropic
+                                       ? BodyInertia{}
+                                       : packed(world_map(type.inertia, type, stage.step.rotor[id]),
+                                                1 / stage.mass_unit);
+        BodyChange& change = coloured.changes[i];
+        const Twelve recalled = change_of(change);
+        coloured.recalled[i] = change;
+        coloured.momentum[i] = {};
+        coloured.body_sums[i] = {0.5 * product(recalled, momentum_of(coloured, i, recalled)), 0, 0};
+        change.velocity = change.first_planes = {};
+        change.rest[0] = change.rest[1] = 0;
+    }
 }
 
 void begin_directions(const ColouredStage& stage, Range bodies) {
@@ -161,7 +191,7 @@ void begin_directions(const ColouredStage& stage, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         coloured.last_changes[i] = coloured.changes[i];
         coloured.direction[i] = {};
-        coloured.weighted_direction[i] = {};
+        coloured.direction_momentum[i] = {};
     }
 }
 
@@ -179,15 +209,13 @@ void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
 void weigh_step(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const WeightedMotion& motion = coloured.weighted_motion[i];
-        coloured.weighted_step[i] = weighted(
-            stage, coloured.bodies[i], difference(coloured.changes[i], coloured.last_changes[i]));
-        WeightedMotion end;
-        for (std::size_t k = 0; k < end.size(); ++k)
-            end[k] = motion[k] + coloured.weighted_step[i][k];
-        coloured.body_sums[i] = {-product(coloured.weighted_step[i], motion),
-                                 -product(coloured.weighted_direction[i], motion),
-                                 0.5 * product(end, end)};
+        const Twelve end = load(coloured.changes[i]);
+        const Twelve step = end - load(coloured.last_changes[i]);
+        const Twelve of_step = momentum_of(coloured, i, step), of_all = load(coloured.momentum[i]);
+        store(of_step, coloured.step_momentum[i]);
+        coloured.body_sums[i] = {-product(step, of_all),
+                                 -product(load(coloured.direction[i]), of_all),
+                                 0.5 * product(end, of_all + of_step)};
     }
 }
 
@@ -220,27 +248,25 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
 void find_direction(const ColouredStage& stage, Range bodies, float carried) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        BodyChange& direction = coloured.direction[i];
-        visit_motion([carried](float& along, float now,
-                               float from) { along = (now - from) + carried * along; },
-                     direction, coloured.changes[i], coloured.last_changes[i]);
-        WeightedMotion& weighted = coloured.weighted_direction[i];
-        for (std::size_t k = 0; k < weighted.size(); ++k)
-            weighted[k] = coloured.weighted_step[i][k] + carried * weighted[k];
-        double squared_speed = 0;
-        for (const float v : direction.velocity) squared_speed += double{v} * v;
-        coloured.body_sums[i] = {product(weighted, weighted), squared_speed, 0};
+        const Twelve step = load(coloured.changes[i]) - load(coloured.last_changes[i]);
+        const Twelve along = step + carried * load(coloured.direction[i]);
+        const Twelve of_along =
+            load(coloured.step_momentum[i]) + carried * load(coloured.direction_momentum[i]);
+        store(along, coloured.direction[i]);
+        store(of_along, coloured.direction_momentum[i]);
+        const Twelve velocity = {along[0], Float4{}, Float4{}};
+        coloured.body_sums[i] = {product(along, of_along), product(velocity, velocity), 0};
     }
 }
 
 void go_along(const ColouredStage& stage, Range bodies, float length) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        visit_motion(
-            [length](float& now, float& from, float along) { now = from = from + length * along; },
-            coloured.changes[i], coloured.last_changes[i], coloured.direction[i]);
-        for (std::size_t k = 0; k < coloured.weighted_motion[i].size(); ++k)
-            coloured.weighted_motion[i][k] += length * coloured.weighted_direction[i][k];
+        const Twelve here = load(coloured.last_changes[i]) + length * load(coloured.direction[i]);
+        store(here, coloured.changes[i]);
+        store(here, coloured.last_changes[i]);
+        store(load(coloured.momentum[i]) + length * load(coloured.direction_momentum[i]),
+              coloured.momentum[i]);
     }
 }
 
@@ -259,8 +285,7 @@ void go_along_general(const ColouredStage& stage, BatchRange batches, float carr
 void go_from_end(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        for (std::size_t k = 0; k < coloured.weighted_motion[i].size(); ++k)
-            coloured.weighted_motion[i][k] += coloured.weighted_step[i][k];
+        store(load(coloured.momentum[i]) + load(coloured.step_momentum[i]), coloured.momentum[i]);
     begin_directions(stage, bodies);
 }
 

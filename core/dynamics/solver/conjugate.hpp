@@ -18,24 +18,29 @@ namespace tesserae {
 // is given up for a pair of sweeps, the next time for two, then for four, and so on.
 //
 // With r the gradient's opposite, b = r.z/(r.z)_last and a = r.p/p.Ap. p.Ap is twice the kinetic
-// energy of what p does to the bodies; -r.p is what p does to them times what x has done, weighted
-// by mass and inertia, and p times the rows' velocities at the start, less their targets.
+// energy of what p does to the bodies; -r.p is what p does to them times the momentum of what x has
+// done, and p times the rows' velocities at the start, less their targets. The start is where the
+// recalled impulses have acted: what they and gravity do is much more than what is left to solve,
+// and the rounding of so much would be what slopes are made of (a wall then sways by 4 mm/s).
 
 /// Whether loads go along conjugate directions: friction is nowhere so strong that what a sweep
 /// changes may grow, see kMostConjugateFriction, and nothing has rolling friction, which what rolls
 /// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
-/// What the impulses that the load starts from have changed, weighted.
-void begin_weights(const ColouredStage& stage, Range bodies);
+/// What the impulses that the load starts from have changed is taken out of the changes, until
+/// add_recalled(): what is left is small, and so is its rounding, of which directions would grow.
+/// Rows come first: take_recalled_round(), take_recalled_general(). The energy of what is taken out
+/// goes into body_sums.
+void take_recalled(const ColouredStage& stage, Range bodies);
 
 /// What the next pair of sweeps goes on from, without a direction.
 void begin_directions(const ColouredStage& stage, Range bodies);
 void begin_round_directions(const ColouredStage& stage, BatchRange batches);
 void begin_general_directions(const ColouredStage& stage, BatchRange batches);
 
-/// After a pair: what it changed, weighted, and r.z, r.p_last and the energy at its end: of each
-/// body, into body_sums; of each batch, into round_work and general_work.
+/// After a pair: the momentum of what it changed, and r.z, r.p_last and the energy at its end: of
+/// each body, into body_sums; of each batch, into round_work and general_work.
 void weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);

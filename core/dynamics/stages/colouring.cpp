@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/counting_sort.hpp"
+#include "core/dynamics/solver/conjugate.hpp"
 #include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
@@ -39,6 +40,21 @@ std::uint32_t run_length(const ContactList& contacts, std::size_t begin) {
     return static_cast<std::uint32_t>(end - begin);
 }
 
+void size_directions(ColouredIslands& coloured) {
+    resize_anew(coloured.recalled, coloured.bodies.size());
+    resize_anew(coloured.direction, coloured.bodies.size());
+    for (auto* const list :
+         {&coloured.momentum, &coloured.step_momentum, &coloured.direction_momentum})
+        resize_anew(*list, coloured.bodies.size());
+    resize_anew(coloured.body_sums, coloured.bodies.size());
+    for (auto* const list : {&coloured.last_round, &coloured.round_direction})
+        resize_anew(*list, coloured.round.size() * impulses_of_round(coloured));
+    for (auto* const list : {&coloured.last_general, &coloured.general_direction})
+        resize_anew(*list, coloured.general_rows * impulses_of_general(coloured));
+    resize_anew(coloured.round_work, coloured.round.size());
+    resize_anew(coloured.general_work, coloured.general.size());
+}
+
 }  // namespace
 
 bool fit_floats(std::span<const TypeProperties> types) {
@@ -64,7 +80,7 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.colours.clear();
     coloured.round.clear();
     coloured.general.clear();
-    coloured.general_rows = 0;
+    coloured.general_rows = coloured.point_responses = 0;
     place_.clear();
     used_.clear();
 }
@@ -85,6 +101,10 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
         const BatchRange round = add_batches({start[0], start[1]}, one_row_each, coloured.round);
         const BatchRange general =
             add_batches({start[1], start[kKinds]}, coloured.general_rows, coloured.general);
+        for (std::uint32_t i = general.begin; i < general.end; ++i) {
+            coloured.general[i].response = coloured.point_responses;
+            coloured.point_responses += responses_of(coloured.general[i].rows);
+        }
         coloured.colours.push_back({round, general});
     }
     coloured.first_colour.push_back(static_cast<std::uint32_t>(coloured.colours.size()));
@@ -103,23 +123,18 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     resize_anew(coloured.changes, coloured.bodies.size());
     resize_anew(coloured.last_changes, coloured.bodies.size());
-    resize_anew(coloured.direction, coloured.bodies.size());
-    for (auto* const list :
-         {&coloured.weighted_motion, &coloured.weighted_step, &coloured.weighted_direction})
-        resize_anew(*list, coloured.bodies.size());
-    resize_anew(coloured.body_sums, coloured.bodies.size());
-    for (auto* const list : {&coloured.last_round, &coloured.round_direction})
-        resize_anew(*list, coloured.round.size() * impulses_of_round(coloured));
-    for (auto* const list : {&coloured.last_general, &coloured.general_direction})
-        resize_anew(*list, coloured.general_rows * impulses_of_general(coloured));
-    resize_anew(coloured.round_work, coloured.round.size());
-    resize_anew(coloured.general_work, coloured.general.size());
-    if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
+    if (has_conjugates(simulation)) size_directions(coloured);
+    if (coloured.turns_unevenly) {
+        resize_anew(coloured.inertias, coloured.bodies.size());
+        resize_anew(coloured.inverse_inertias, coloured.bodies.size());
+        resize_anew(coloured.pair_inertias, coloured.general.size());
+    }
     if (simulation.settings.solver == Solver::kSoft)
         resize_anew(coloured.angular_velocity, coloured.bodies.size());
     resize_anew(coloured.round_rows, coloured.round.size());
     resize_anew(coloured.frames, coloured.general.size());
     resize_anew(coloured.rows, coloured.general_rows);
+    resize_anew(coloured.point_response, coloured.point_responses);
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());
     resize_anew(coloured.pair_friction, coloured.general.size());

@@ -29,11 +29,13 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
-/// A change of a body's motion, so weighted that the square of its length is twice its energy [J
-/// over the mass unit]: velocity, and turning in the principal planes.
-using WeightedMotion = std::array<float, 10>;
+/// What a change of a body's motion changes of its momentum, angular momentum: as BodyChange, in
+/// which it times a motion is twice an energy [J over the mass unit]; the last two are 0.
+struct alignas(16) BodyMomentum {
+    std::array<float, 4> velocity = {}, first_planes = {}, rest = {};
+};
 
-/// World inverse inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
+/// World inertia or its inverse: the upper triangle of a symmetric 6x6 matrix, row by row.
 struct alignas(32) BodyInertia {
     std::array<std::array<float, 4>, 6> entry = {};  ///< three unused
 };
@@ -45,7 +47,19 @@ struct Batch {
     std::array<std::uint8_t, kLanes> points = {};      ///< each pair's contacts
     std::uint32_t row = 0;                             ///< first of its rows
     std::uint32_t rows = 0;                            ///< the most points of a lane
+    std::uint32_t response = 0;  ///< first of its point responses, see responses_of()
 };
+
+/// Points that a batch with so many rows is worked on as if it had.
+constexpr std::uint32_t padded_points(std::uint32_t rows) {
+    return rows > 4 ? 8 : rows > 2 ? 4 : rows;
+}
+static_assert(kManifoldPoints == 8);
+/// How many responses of points to each other such a batch has: the lower triangle of a symmetric
+/// matrix, row by row.
+constexpr std::uint32_t responses_of(std::uint32_t rows) {
+    return padded_points(rows) * (padded_points(rows) + 1) / 2;
+}
 
 /// The normal part of a row; see NormalPass. Targets are less the normal velocity of the start.
 struct NormalRow {
@@ -85,7 +99,11 @@ struct PairFrame {
     std::array<Eight, 4> h;
     std::array<Eight, 4> centre_a, centre_b;  ///< from the bodies' centres [m]
     std::array<Eight, 4> motion;              ///< of b against a at the start, along the normal
-    std::array<Eight, 10> response;           ///< of it to impulses along the normal: symmetric
+};
+/// Of bodies that do not turn alike in all planes: what BodyInertia has of each lane's.
+using LaneInertia = std::array<Eight, 21>;
+struct PairInertia {
+    LaneInertia a, b;
 };
 /// The same across the normal, which friction changes and sees: the velocity along x, y, z and the
 /// turning in xy, xz, yz.
@@ -110,6 +128,7 @@ struct GeneralFriction {
 /// Rolling, which turns in xn, yn, zn, and twisting, in xy, xz, yz.
 struct PairRolling {
     Eight arm;                                         ///< see RollingRow
+    std::array<Eight, 10> response;                    ///< to impulses along the normal: symmetric
     std::array<Eight, 6> rolling_mass, twisting_mass;  ///< 11 12 13 22 23 33
     Eight rolling_step, twisting_step;                 ///< see RollingPart
 };
@@ -138,24 +157,30 @@ struct ColouredIslands {
     std::vector<BodyId> bodies;
     std::vector<ColourBatches> colours;
     std::vector<Batch> round, general;
-    std::uint32_t general_rows = 0;
+    std::uint32_t general_rows = 0, point_responses = 0;  ///< of `general`, in all
 
-    std::vector<BodyChange> changes;  ///< of `bodies`
+    std::vector<BodyChange> changes;   ///< of `bodies`
+    std::vector<BodyChange> recalled;  ///< likewise, before the changes of a load with directions
     // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
     // with, x, what the pair added, z, and the direction, p.
     std::vector<BodyChange> last_changes, direction;
-    std::vector<WeightedMotion> weighted_motion, weighted_step, weighted_direction;
+    std::vector<BodyMomentum> momentum, step_momentum, direction_momentum;  ///< of x, z and p
     std::vector<std::array<double, 3>> body_sums;  ///< of `bodies`: items of sums
     std::vector<Eight> last_round, last_general, round_direction, general_direction;
     std::vector<std::array<Eight, 3>> round_work, general_work;  ///< likewise of each batch
-    std::vector<BodyInertia> inertias;              ///< of `bodies`, if any turns unevenly
-    std::vector<Bivector> angular_velocity;         ///< of `bodies`, as solved; Solver::kSoft
-    std::vector<RoundRow> round_rows;               ///< of `round`
-    std::vector<RoundFriction> round_friction;      ///< of `round`
-    std::vector<RoundRolling> round_rolling;        ///< likewise
-    std::vector<PairFrame> frames;                  ///< of `general`
-    std::vector<PairFriction> pair_friction;        ///< likewise
-    std::vector<GeneralRow> rows;                   ///< of `general`, see Batch::row
+    /// Of `bodies`, if any turns unevenly.
+    std::vector<BodyInertia> inertias, inverse_inertias;
+    std::vector<Bivector> angular_velocity;     ///< of `bodies`, as solved; Solver::kSoft
+    std::vector<RoundRow> round_rows;           ///< of `round`
+    std::vector<RoundFriction> round_friction;  ///< of `round`
+    std::vector<RoundRolling> round_rolling;    ///< likewise
+    std::vector<PairFrame> frames;              ///< of `general`
+    std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
+    std::vector<PairFriction> pair_friction;    ///< likewise
+    std::vector<GeneralRow> rows;               ///< of `general`, see Batch::row
+    /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
+    /// of the velocity along it at another; 0 for points that a batch does not have.
+    std::vector<Eight> point_response;
     std::vector<GeneralFriction> general_friction;  ///< likewise
     std::vector<PairRolling> pair_rolling;          ///< of `general`
     std::vector<GeneralRolling> general_rolling;    ///< of `rows`

@@ -87,6 +87,7 @@ class ContactList {
         return shared.no_seam_points == end - begin ? shared.no_seam : 0u;
     }
     const PackedVec4& normal(std::size_t i) const { return shared_[points_[i].shared].normal; }
+    const PackedVec4& point(std::size_t i) const { return points_[i].place; }
     double separation(std::size_t i) const { return points_[i].separation; }
     std::uint32_t feature(std::size_t i) const { return points_[i].feature; }
     Part part(std::size_t begin, std::size_t end) const { return {{*this, begin}, {*this, end}}; }

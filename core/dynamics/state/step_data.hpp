@@ -29,10 +29,6 @@ struct Bounds {
     double radius = 0;  ///< [m]; infinite if unbounded
 };
 
-/// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
-/// rows of zeros make a column two whole vector registers.
-using BivectorMap = Eigen::Matrix<double, 8, 6>;
-
 /// Two bodies that may touch in the step, a < b.
 struct BodyPair {
     BodyId a, b;

@@ -1,7 +1,10 @@
 #include "core/dynamics/state/type_properties.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+
+#include "core/algebra/twin_quaternion.hpp"
 
 namespace tesserae {
 namespace {
@@ -73,6 +76,49 @@ Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const 
 
 Bivector angular_momentum(const TypeProperties& type, const Rotor& rotor, const Bivector& omega) {
     return apply(type.inertia, principal_rotor(type, rotor), omega);
+}
+
+BivectorMap world_map(const Bivector& diagonal, const TypeProperties& type, const Rotor& rotor) {
+    using simd::Double4;
+    // Turn the three principal planes that contain the first axis. The planes orthogonal to these
+    // are their duals: the same numbers, with those of each pair swapped.
+    const std::array<DualPlanes, 3> planes = turned_planes(to_twin(principal_rotor(type, rotor)));
+    const DualPlanes each = to_dual_planes_unsigned(diagonal);
+    const std::array<Double2, 3> entries{each.x, each.y, each.z};
+
+    // One product of these has in its lanes those of two pairs, then those with one pair swapped.
+    std::array<std::array<Double4, 3>, 3> twice, crossed;
+    for (int k = 0; k < 3; ++k) {
+        const Double2 of_axis[] = {planes[k].x, planes[k].y, planes[k].z};
+        for (int i = 0; i < 3; ++i) {
+            twice[k][i] = __builtin_shufflevector(of_axis[i], of_axis[i], 0, 1, 0, 1);
+            crossed[k][i] = __builtin_shufflevector(of_axis[i], of_axis[i], 0, 1, 1, 0);
+        }
+    }
+    BivectorMap map;
+    map.bottomRows<2>().setZero();
+    // The places of the pairs (xy, zw), (xz, wy), (xw, yz) and the sign of wy = -yw.
+    constexpr int kFirst[] = {0, 1, 2}, kSecond[] = {5, 4, 3};
+    constexpr double kSign[] = {1, -1, 1};
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j) {
+            Double4 sum{}, of_duals{};
+            for (int k = 0; k < 3; ++k) {
+                const Double4 products = twice[k][i] * crossed[k][j];
+                sum += entries[k][0] * products;
+                of_duals += entries[k][1] * products;
+            }
+            // A dual's products are its plane's with the lanes swapped.
+            sum += __builtin_shufflevector(of_duals, of_duals, 1, 0, 3, 2);
+            const auto set = [&](int row, int column, double value) {
+                map(row, column) = map(column, row) = value;
+            };
+            set(kFirst[i], kFirst[j], sum[0]);
+            set(kSecond[i], kSecond[j], kSign[i] * kSign[j] * sum[1]);
+            set(kFirst[i], kSecond[j], kSign[j] * sum[2]);
+            set(kSecond[i], kFirst[j], kSign[i] * sum[3]);
+        }
+    return map;
 }
 
 }  // namespace tesserae

@@ -39,6 +39,14 @@ inline Rotor principal_rotor(const TypeProperties& type, const Rotor& rotor) {
     return type.has_axes ? rotor * type.axes : rotor;
 }
 
+/// An operator on bivectors, component by component: columns are the images of xy, ..., zw. Two
+/// rows of zeros make a column two whole vector registers.
+using BivectorMap = Eigen::Matrix<double, 8, 6>;
+
+/// The operator that is diagonal in the principal planes, seen from the world: the sum over these
+/// of the entry times the plane times itself.
+BivectorMap world_map(const Bivector& diagonal, const TypeProperties& type, const Rotor& rotor);
+
 /// What an angular impulse [N m s, world] does to the angular velocity of a body so turned.
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse);
 

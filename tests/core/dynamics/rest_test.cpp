@@ -168,7 +168,8 @@ TEST(Rest, OfAWallThatDoesNotSway) {
     PhysicsSettings settings;
     settings.tolerance = 0;
     settings.iterations = 40;
-    EXPECT_LT(sway_of_wall(settings), 1e-3);
+    // Directions made of the rounding of gravity and of what is recalled sway by 1 to 5 mm/s.
+    EXPECT_LT(sway_of_wall(settings), 1e-4);
 }
 
 /// Conjugate directions see what all of a wall does together: without them it sways by 17 mm/s.

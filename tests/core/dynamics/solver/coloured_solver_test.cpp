@@ -88,7 +88,9 @@ Unsolved random_island(Solver solver, double friction, bool spheres_only, double
 
 TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
     for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
-        for (const auto& [friction, rolling] : {std::pair{0.0, 0.0}, {0.7, 0.0}, {0.7, 0.1}})
+        // Up to 0.75 there are conjugate directions.
+        for (const auto& [friction, rolling] :
+             {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.7, 0.0}, {0.7, 0.1}})
             for (const bool spheres_only : {false, true}) {
                 Unsolved one = random_island(solver, friction, spheres_only, rolling);
                 ASSERT_EQ(one.step.islands.size(), 1u);
@@ -126,6 +128,25 @@ TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 EXPECT_EQ(tangent > 0, friction > 0);
                 EXPECT_FALSE(same_bits(one.step.velocity, one.simulation.bodies.velocity));
             }
+}
+
+TEST(ColouredSolver, MakesRowsOnceForABlowAndTheLoadAfterIt) {
+    for (const auto& [friction, rolling] : {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.7, 0.1}})
+        for (const bool spheres_only : {false, true}) {
+            Unsolved once = random_island(Solver::kImpulse, friction, spheres_only, rolling);
+            solve_coloured_blow(once.simulation, once.step, 0, OneThread{});
+            ASSERT_EQ(once.step.has_rows[0], 1);
+            Unsolved anew = once;
+            anew.step.has_rows[0] = 0;
+            // Where they are made they take these from the bodies, else from the blow's rows.
+            for (BodyInertia& inertia : once.step.coloured.inverse_inertias) inertia = {};
+            solve_coloured_island(once.simulation, once.step, 0, OneThread{});
+            solve_coloured_island(anew.simulation, anew.step, 0, OneThread{});
+            EXPECT_TRUE(same_bits(once.step.velocity, anew.step.velocity));
+            EXPECT_TRUE(same_bits(once.step.angular_velocity, anew.step.angular_velocity));
+            for (std::size_t i = 0; i < once.step.impulses.size(); ++i)
+                ASSERT_EQ(once.step.impulses[i].normal, anew.step.impulses[i].normal);
+        }
 }
 
 /// The largest difference of the velocities of two worlds [m/s; rad/s].
@@ -189,8 +210,9 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                 add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0), velocity, omega);
             }
             // Friction and rolling friction leave 3/4 of each other's speed after an iteration.
+            // Of which a coloured blow has half.
             const PhysicsSettings settings =
-                settings_of(soft ? Solver::kSoft : Solver::kImpulse, hit ? 100 : 300);
+                settings_of(soft ? Solver::kSoft : Solver::kImpulse, hit ? 200 : 300);
             const StepData plain = solved(bodies, settings, kStep, kNoneColoured);
             const StepData coloured = solved(bodies, settings, kStep, 1);
             if (plain.contacts.empty()) continue;
@@ -218,8 +240,10 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                                 : friction == 0 ? (single ? 1e-5 : 6e-3)
                                                 : (single ? 1e-4 : several);
             if (!hit) {
-                EXPECT_LT(coloured.residual[0],
-                          std::max(jams ? 1e-4 : 3e-5, 3 * plain.residual[0]));
+                // Where bodies slide, friction before the normal impulses and after them, as sweeps
+                // go forward and backward, take turns (measured: 3.2e-5).
+                const double ended = jams ? 1e-4 : carried ? 5e-5 : 3e-5;
+                EXPECT_LT(coloured.residual[0], std::max(ended, 3 * plain.residual[0]));
             }
             if (!hit && jams && plain.residual[0] > 1e-5) continue;
             EXPECT_LT(difference(plain, coloured), most)
