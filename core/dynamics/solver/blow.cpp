@@ -23,28 +23,33 @@ constexpr double kEnergyRounding = 1e-12, kNotJammed = 1e-6;
 }  // namespace
 
 bool has_blow(const Simulation& simulation, const StepData& step, Range contacts) {
-    BlowFilter filter;
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i) {
-        const Contact contact = step.contacts[i];
-        if (filter.passes(simulation, step, contact) &&
-            blow_of(simulation, step, contact).fastest > 0)
-            return true;
+    for (std::size_t begin = contacts.begin; begin < contacts.end;) {
+        const ContactList::Run run = step.contacts.run(begin, contacts.end);
+        const BlowFilter filter(simulation, step, step.contacts[begin]);
+        for (std::size_t i = run.begin; i < run.end; ++i)
+            if (filter.passes(step.contacts.point(i)) &&
+                blow_of(simulation, step, step.contacts[i]).fastest > 0)
+                return true;
+        begin = run.end;
     }
     return false;
 }
 
 Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island) {
     Blow all;
-    BlowFilter filter;
     const Range places = step.islands.places(island);
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        const Contact contact = step.contacts[step.islands.contacts[i]];
-        if (filter.passes(simulation, step, contact)) {
-            const Blow blow = blow_of(simulation, step, contact);
+    for (std::size_t place = places.begin; place < places.end;) {
+        const std::size_t first = step.islands.contacts[place];
+        const ContactList::Run run = step.contacts.run(first, step.contacts.size());
+        const BlowFilter filter(simulation, step, step.contacts[first]);
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            if (!filter.passes(step.contacts.point(i))) continue;
+            const Blow blow = blow_of(simulation, step, step.contacts[i]);
             all.fastest = std::max(all.fastest, blow.fastest);
             all.returned = std::max(all.returned, blow.returned);
         }
-        all.driven |= is_driven(simulation, contact.a) || is_driven(simulation, contact.b);
+        all.driven |= is_driven(simulation, run.a) || is_driven(simulation, run.b);
+        place += run.size();
     }
     return all;
 }

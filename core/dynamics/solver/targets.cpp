@@ -36,8 +36,8 @@ double rebound_velocity(double e, double v0, double g, double s, double h) {
 }
 
 /// Overlap that is left alone [m].
-double slop_of(const Simulation& simulation, const Contact& contact) {
-    return std::min(simulation.type_of(contact.a).slop, simulation.type_of(contact.b).slop);
+double slop_of(const Simulation& simulation, BodyId a, BodyId b) {
+    return std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
 }
 
 /// Bodies that bounce and do not hit each other by themselves: stopping them at each other's
@@ -69,7 +69,7 @@ PairTargets::PairTargets(const Simulation& simulation, const StepData& step, con
       soft_(simulation.settings.solver == Solver::kSoft),
       bounces_(cause == Cause::kBlow || simulation.needs.restitution),
       h_(step.h),
-      slop_(slop_of(simulation, contact)),
+      slop_(slop_of(simulation, contact.a, contact.b)),
       // Acts on the second half of the sub-step only, so that it has to be twice as large.
       fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()) {
     if (bounces_) approach_ = approach_of(simulation, step, contact);
@@ -111,19 +111,21 @@ ContactTargets PairTargets::of_overlap(double s) const {
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
     if (simulation.settings.solver != Solver::kImpulse || !step.islands.held[island]) return false;
     const Range places = step.islands.places(island);
-    for (std::size_t i = places.begin; i < places.end; ++i) {
-        const Contact contact = step.contacts[step.islands.contacts[i]];
-        if (contact.separation < -slop_of(simulation, contact)) return true;
+    for (std::size_t place = places.begin; place < places.end;) {
+        const ContactList::Run run =
+            step.contacts.run(step.islands.contacts[place], step.contacts.size());
+        const double deep = -slop_of(simulation, run.a, run.b);
+        for (std::size_t i = run.begin; i < run.end; ++i)
+            if (step.contacts.separation(i) < deep) return true;
+        place += run.size();
     }
     return false;
 }
 
-void BlowFilter::see(const Simulation& simulation, const StepData& step, const Contact& c) {
-    a_ = c.a, b_ = c.b, normal_ = c.normal, centre_ = step.position[c.a];
-    slowest_ = approach_of(simulation, step, c).slowest;
+BlowFilter::BlowFilter(const Simulation& simulation, const StepData& step, const Contact& c)
+    : centre_(step.position[c.a]), slowest_(approach_of(simulation, step, c).slowest) {
     // At r from a's centre b's velocity against a is v + w.r, and n.(w.r) = -(w.n).r.
     Vec4 v = step.velocity[c.b] - step.velocity[c.a];
-    turning_.setZero();
     if (simulation.needs.turning) {
         const Bivector& w_b = step.angular_velocity[c.b];
         v += velocity_at(w_b, centre_ - step.position[c.b]);

@@ -76,21 +76,19 @@ struct Blow {
 /// Of one contact, but for `driven`. Needs the velocities before gravity.
 Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact);
 
-/// Passes contacts that may be blows; quick where the points of a pair follow each other.
+/// Passes points of a run that may be blows.
 class BlowFilter {
   public:
-    bool passes(const Simulation& simulation, const StepData& step, const Contact& c) {
-        if (c.a != a_ || c.b != b_ || c.normal != normal_) see(simulation, step, c);
+    /// @param contact   any of the run
+    BlowFilter(const Simulation& simulation, const StepData& step, const Contact& contact);
+    bool passes(const Vec4& point) const {
         // blow_of() rounds otherwise.
-        return !(approach_ + turning_.dot(c.point - centre_) < 0.99 * slowest_);
+        return !(approach_ + turning_.dot(point - centre_) < 0.99 * slowest_);
     }
 
   private:
-    void see(const Simulation& simulation, const StepData& step, const Contact& c);
-
-    BodyId a_ = 0, b_ = 0;  ///< of no pair
-    Vec4 normal_ = Vec4::Zero(), centre_ = Vec4::Zero(), turning_ = Vec4::Zero();
-    double approach_ = 0, slowest_ = 0;
+    Vec4 centre_, turning_ = Vec4::Zero();
+    double approach_, slowest_;
 };
 
 }  // namespace tesserae

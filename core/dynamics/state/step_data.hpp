@@ -37,7 +37,8 @@ struct BodyPair {
 };
 
 /// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
-/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved.
+/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved. All of
+/// a run are in one island.
 ///
 /// They are in ascending order of (a, b, feature), and the contacts of small islands are solved in
 /// it, one by one. Large ones are coloured and solved in order of the batches that ColouredIslands
