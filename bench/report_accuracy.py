@@ -31,7 +31,7 @@ LARGEST_RESIDUAL = np.log(1.5)
 DOUBT = "doubt about the converged run"
 # Noise by construction: not ranked.
 STATISTICS = ("components against Gauss", "speeds against Maxwell", DOUBT)
-DEFAULT = ("midpoint", "impulse", 1, 40)
+DEFAULT = ("midpoint", "impulse", 1, 20)
 DEFAULT_STEPS = 240
 
 Point = collections.namedtuple("Point", "steps error time row")
