@@ -220,7 +220,7 @@ def report_ways(head, tree, folder):
                       textcoords="offset points")
     axes.step([r[2] for r in front], [r[3] for r in front], where="post", color="gold", lw=6,
               alpha=0.5, zorder=0, label="Pareto front")
-    axes.set_xlabel("run time over the default's (impulse, 1 x 40 at most, 240 steps a second)")
+    axes.set_xlabel("run time over the default's (impulse, 1 x 20 at most, 240 steps a second)")
     axes.set_ylabel("error over the default's")
     axes.set_title(f"Geometric means over {count} experiments; the number is the most steps a second",
                    fontsize=10)

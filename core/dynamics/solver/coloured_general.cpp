@@ -29,7 +29,6 @@ template <class F>
 struct PairSweep {
     ColouredIslands& coloured;
     const Batch& batch;
-    const PairFrame& frame;
     Sweep sweep;
 
     /// Row of a point, in the sweep's order.
@@ -208,7 +207,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     const PairFrame& pair_frame = coloured.frames[index];
     LanePair<F, kUneven> bodies(lane, coloured, index);
     const Frame<F> frame(load(lane, pair_frame.h));
-    const PairSweep<F> pair = {coloured, batch, pair_frame, sweep};
+    const PairSweep<F> pair = {coloured, batch, sweep};
     PairMotion<F> of = {frame.from_world(bodies.motion())};
     add(load_all(lane, pair_frame.motion), of.motion.along);
     if constexpr (kFriction)

@@ -209,8 +209,8 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                 }
                 add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0), velocity, omega);
             }
-            // Friction and rolling friction leave 3/4 of each other's speed after an iteration.
-            // Of which a coloured blow has half.
+            // Friction and rolling friction leave 3/4 of each other's speed after an iteration. A
+            // coloured blow has half of the iterations.
             const PhysicsSettings settings =
                 settings_of(soft ? Solver::kSoft : Solver::kImpulse, hit ? 200 : 300);
             const StepData plain = solved(bodies, settings, kStep, kNoneColoured);
