@@ -97,12 +97,6 @@ constexpr int kLeastSweeps = 8;
 /// lead there.
 constexpr double kMostCarried = 4;
 
-/// How steep a pair of sweeps has to be to go on after a blow, as a part of the steepest of the
-/// load, usual 0.01: where bodies hit each other contacts come and go, and hardly any number of
-/// sweeps comes below the tolerance. More, and what rests beside them is left alone too soon; less,
-/// and a wall that has been hit takes all the iterations.
-constexpr double kLeastSlope = 0.01;
-
 /// How long a step along a direction is at most, in the sweeps' own step, usual 64. More, and where
 /// contacts open such a step leads far away; less, and slow errors take longer (at 8 a wall that
 /// has come to rest takes 40 % more sweeps).

@@ -148,11 +148,8 @@ class ConjugateDirections {
         holds_ = plain_ == 0 && length > 1 && sums[0] > rounding_;
         length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
         slope_ = sums[0];
-        steepest_ = std::max(steepest_, std::abs(slope_));
         return length_ * std::sqrt(fastest);
     }
-    /// Whether the last pair took a part of the energy for which it is worth to go on.
-    bool pays() const { return std::abs(slope_) > kLeastSlope * steepest_; }
     /// From there on to the next pair.
     void go_on() {
         const ColouredStage& stage = island_.stage();
@@ -215,9 +212,9 @@ class ConjugateDirections {
 
     const ColouredIsland& island_;
     const Threads& threads_;
-    double slope_ = 0, last_slope_ = 0, steepest_ = 0;  ///< r.z
-    double last_energy_ = 0;                            ///< at the end of the last pair
-    double rounding_ = 0;                               ///< of a slope
+    double slope_ = 0, last_slope_ = 0;  ///< r.z
+    double last_energy_ = 0;             ///< at the end of the last pair
+    double rounding_ = 0;                ///< of a slope
     int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
     float carried_ = 0, length_ = 1;
     bool holds_ = false;  ///< the direction
@@ -257,14 +254,12 @@ double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& e
 }
 
 /// A load by conjugate directions. It ends once neither a row's velocity nor, by the next step, a
-/// body's changes by more than the tolerance: what all of a wall does together no row sees. After a
-/// blow it also ends once a pair does not pay.
+/// body's changes by more than the tolerance: what all of a wall does together no row sees.
 /// @return the residual of the last iteration [m/s]
 template <class Threads>
 double iterate_along_conjugates(const ColouredIsland& island, const Effort& effort,
                                 const Threads& threads, LaneCount lanes) {
     std::optional<ConjugateDirections<Threads>> directions;
-    const bool after_blow = island.stage().made;
     double residual = 0;
     for (int i = 0; i < effort.sweeps; ++i) {
         Sweep sweep = sweep_of(Pass::kSolve, effort, i);
@@ -274,8 +269,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
         residual = sweep_coloured(island, sweep, threads, lanes);
         if (sweep.backward || !directions || i + 1 == effort.sweeps) continue;
         const double left = std::max(residual, directions->find());
-        const bool goes_on = left > effort.enough && (!after_blow || directions->pays());
-        if (i + 1 >= kLeastSweeps && effort.enough >= 0 && !goes_on) break;
+        if (i + 1 >= kLeastSweeps && left <= effort.enough) break;
     }
     if (directions) directions->end();
     return residual;
