@@ -23,6 +23,7 @@ constexpr std::size_t kLanes = 8;
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Unsigned4 = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
+using Half8 = std::uint16_t __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
 using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 using Double2 = double __attribute__((vector_size(2 * sizeof(double))));
 using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
@@ -106,6 +107,29 @@ template <class V>
 #else
     for (std::size_t i = 0; i < kLanes; ++i) c[i] = std::fma(a[i], b[i], c[i]);
     return c;
+#endif
+}
+
+/// The nearest float of eight significant bits, even where there are two, and back: its upper half
+/// (bfloat16). Of finite floats below 2^127.
+[[gnu::always_inline]] inline std::uint16_t to_half(float x) {
+    const auto bits = same_bits<std::uint32_t>(x);
+    return static_cast<std::uint16_t>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
+}
+[[gnu::always_inline]] inline Half8 to_half(Float8 x) {
+    using Half16 = std::uint16_t __attribute__((vector_size(2 * sizeof(Half8))));
+    const auto bits = same_bits<Unsigned8>(x);
+    const auto halves = same_bits<Half16>(bits + 0x7fff + ((bits >> 16) & 1));
+    return __builtin_shufflevector(halves, halves, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+[[gnu::always_inline]] inline float from_half(std::uint16_t x) {
+    return same_bits<float>(std::uint32_t{x} << 16);
+}
+[[gnu::always_inline]] inline Float8 from_half(Half8 x) {
+#ifdef __AVX2__
+    return same_bits<Float8>(_mm256_slli_epi32(_mm256_cvtepu16_epi32(same_bits<__m128i>(x)), 16));
+#else
+    return same_bits<Float8>(__builtin_convertvector(x, Unsigned8) << 16);
 #endif
 }
 

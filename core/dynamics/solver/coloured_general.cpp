@@ -6,10 +6,10 @@ namespace {
 using namespace lanes;
 
 /// friction_impulse() of the one-by-one solver, in the frame; solve_part() of its rolling rows.
-template <class F>
+template <class F, class Mass>
 [[gnu::always_inline]] inline LaneVec4<F> friction_impulse(const Lane<F>& lane,
-                                                           const std::array<Eight, 6>& masses,
-                                                           const Eight& slide_mass,
+                                                           const std::array<Mass, 6>& masses,
+                                                           const Mass& slide_mass,
                                                            const LaneVec4<F>& old,
                                                            const LaneVec4<F>& slip, F most) {
     const LaneVec4<F> sticking = old - times(load_all(lane, masses), slip);
@@ -103,21 +103,22 @@ template <class F>
                                                   const PairFriction& friction, PairMotion<F>& of,
                                                   F& left) {
     const F mu = lane.load(friction.friction);
+    const std::array<F, 21> response = load_all(lane, friction.response);
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
-        GeneralFriction& row = pair.coloured.general_friction[k];
+        const GeneralFriction& row = pair.coloured.general_friction[k];
+        std::array<Eight, 3>& impulse = pair.coloured.impulses.tangent[k];
         const Place<F> at = place_of(lane, pair.coloured.rows[k]);
-        const LaneVec4<F> old = load(lane, row.impulse);
+        const LaneVec4<F> old = load(lane, impulse);
         const LaneVec4<F> slip = across_at(at, of.motion.across);
         // Along a direction a normal impulse may have got below 0.
-        const F most = mu * larger(lane.load(pair.coloured.rows[k].along.impulse), F{});
-        const LaneVec4<F> all =
-            friction_impulse<F>(lane, row.mass, row.slide_mass, old, slip, most);
-        store(lane, all, row.impulse);
+        const F most = mu * larger(lane.load(pair.coloured.impulses.normal[k]), F{});
+        const LaneVec4<F> all = friction_impulse(lane, row.mass, row.slide_mass, old, slip, most);
+        store(lane, all, impulse);
         const LaneVec4<F> change = all - old;
         const std::array<F, 6> seen = seen_from_centre(at, change);
         add(seen, of.impulse.across);
-        add_product(lane, friction.response, seen, of.motion.across);
+        add_product(response, seen, of.motion.across);
         if (pair.sweep.measured)
             left = larger(left, velocity_left(lane.load(row.slide_mass), change));
     }
@@ -126,29 +127,30 @@ template <class F>
 /// Rolling or twisting of all points.
 /// @param motion, impulse, response   along or across the normal, where three from `first` on turn
 /// @param part                        where a row's impulses begin
-template <class F, std::size_t kSize, std::size_t kEntries>
+template <class F, class Response, std::size_t kSize, std::size_t kEntries>
 [[gnu::always_inline]] inline void solve_turning(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  std::size_t first, F arm,
                                                  const std::array<Eight, 6>& mass,
                                                  const Eight& step_mass,
-                                                 const std::array<Eight, kEntries>& response,
+                                                 const std::array<Response, kEntries>& response,
                                                  std::size_t part, std::array<F, kSize>& motion,
                                                  std::array<F, kSize>& impulse) {
+    const std::array<F, kEntries> responses = load_all(lane, response);
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
         GeneralRolling& row = pair.coloured.general_rolling[k];
         LaneVec4<F> old{};
         for (std::size_t j = 0; j < 3; ++j) old[j] = lane.load(row.impulse[part + j]);
         const LaneVec4<F> slip = {motion[first], motion[first + 1], motion[first + 2], F{}};
-        const LaneVec4<F> all = friction_impulse<F>(
-            lane, mass, step_mass, old, slip, arm * lane.load(pair.coloured.rows[k].along.impulse));
+        const LaneVec4<F> all = friction_impulse(lane, mass, step_mass, old, slip,
+                                                 arm * lane.load(pair.coloured.impulses.normal[k]));
         std::array<F, kSize> change{};
         for (std::size_t j = 0; j < 3; ++j) {
             lane.store(all[j], row.impulse[part + j]);
             change[first + j] = all[j] - old[j];
         }
         add(change, impulse);
-        add_product(lane, response, change, motion);
+        add_product(responses, change, motion);
     }
 }
 template <class F>
@@ -177,7 +179,7 @@ template <bool kFriction, bool kRolling, class F>
         solve_friction(lane, pair, friction, of, left);
         if constexpr (kRolling) {
             const PairRolling& rolling = pair.coloured.pair_rolling[index];
-            add_product(lane, rolling.response, of.impulse.along, of.motion.along);
+            add_product(load_all(lane, rolling.response), of.impulse.along, of.motion.along);
             of.see_across(lane, friction);
             solve_rolling(lane, pair, rolling, of);
             of.see_along(lane, friction);
@@ -274,7 +276,7 @@ void leave_whirling_general(const ColouredStage& stage, BatchRange batches) {
                 if (!coloured.friction) continue;
                 GeneralFriction& friction = coloured.general_friction[batch.row + p];
                 friction.slide_mass.lane[k] = 0;
-                for (Eight& mass : friction.mass) mass.lane[k] = 0;
+                for (RoughEight& mass : friction.mass) mass.lane[k] = 0;
             }
         }
     }
@@ -306,13 +308,13 @@ void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t poi
         const Frame<Float8> frame(load(all, coloured.frames[index].h));
         std::array<float*, kLanes> to;
         for (std::size_t k = 0; k < kLanes; ++k) to[k] = tangents[k].data();
-        store_four(frame.reflected(load(all, coloured.general_friction[row].impulse)).c, to);
+        store_four(frame.reflected(load(all, coloured.impulses.tangent[row])).c, to);
     }
     for (std::size_t k = 0; k < kLanes; ++k) {
         if (point >= batch.points[k]) continue;
         const std::uint32_t contact = batch.contact[k] + point;
         ContactImpulse& impulse = stage.step.impulses[contact];
-        impulse.normal = stage.mass_unit * coloured.rows[row].along.impulse.lane[k];
+        impulse.normal = stage.mass_unit * coloured.impulses.normal[row].lane[k];
         impulse.tangent = stage.mass_unit * Eigen::Vector4f(tangents[k].data()).cast<double>();
         if (coloured.rolling)
             stage.step.angular_impulses[contact] =
@@ -323,7 +325,7 @@ void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t poi
 
 void keep_hits(const ColouredStage& stage, std::uint32_t index, std::uint32_t point) {
     const Batch& batch = stage.step.coloured.general[index];
-    const Eight& normal = stage.step.coloured.rows[batch.row + point].along.impulse;
+    const Eight& normal = stage.step.coloured.impulses.normal[batch.row + point];
     for (std::size_t k = 0; k < kLanes; ++k)
         if (point < batch.points[k]) stage.step.hit[batch.contact[k] + point] = normal.lane[k] > 0;
 }

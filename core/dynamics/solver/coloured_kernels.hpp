@@ -19,16 +19,6 @@ struct ColouredStage {
     bool made = false;     ///< the rows are those of the blow before, but for what they start from
 };
 
-/// A body's inertia times a factor, in float.
-inline BodyInertia packed(const BivectorMap& map, double factor) {
-    BodyInertia inertia;
-    std::size_t k = 0;
-    for (int i = 0; i < 6; ++i)
-        for (int j = i; j < 6; ++j, ++k)
-            inertia.entry[k / 4][k % 4] = static_cast<float>(map(i, j) * factor);
-    return inertia;
-}
-
 // Of round and of general batches: makes their rows and applies the impulses that they start from;
 // one iteration; step.impulses of their contacts, or of a blow step.hit. Batches of one colour may
 // be worked on at the same time.

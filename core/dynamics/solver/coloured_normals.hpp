@@ -14,6 +14,7 @@ namespace tesserae::lanes {
 template <std::size_t kPoints, class F>
 class PairNormals {
     using All = std::make_index_sequence<kPoints>;
+    static constexpr std::size_t kResponses = responses_of(kPoints);
 
   public:
     /// @param motion   of the pair, along the normal
@@ -21,7 +22,9 @@ class PairNormals {
                                        const Batch& batch, const std::array<F, 4>& motion)
         : lane_(lane),
           rows_(&coloured.rows[batch.row]),
-          response_(&coloured.point_response[batch.response]),
+          relax_(&coloured.relax[batch.row]),
+          impulses_(&coloured.impulses.normal[batch.row]),
+          response_(first_of<kResponses>(lane, &coloured.point_response[batch.response])),
           count_(batch.rows),
           change_{} {
         see(motion, All());
@@ -56,8 +59,8 @@ class PairNormals {
     [[gnu::always_inline]] void solve_point(Pass pass, bool soft, bool measured, F& left,
                                             std::index_sequence<j...>) {
         if (k >= count_) return;
-        F impulse;
-        const F change = solve_normal(lane_, rows_[k].along, velocity_[k], soft, pass, impulse);
+        const F change =
+            solve_normal(lane_, rows_[k].along, relax_[k], velocity_[k], soft, pass, impulses_[k]);
         change_[k] += change;
         ((kFirst || (kBackward ? j < k : j > k)
               ? void(velocity_[j] = fused(change, response(k, j), velocity_[j]))
@@ -77,12 +80,14 @@ class PairNormals {
                    fused(change_[k], at[1], impulse[2]), fused(change_[k], at[2], impulse[3])};
     }
     [[gnu::always_inline]] F response(std::size_t i, std::size_t j) const {
-        return lane_.load(response_[i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j]);
+        return response_[i < j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j];
     }
 
     const Lane<F>& lane_;
-    GeneralRow* const rows_;
-    const Eight* const response_;
+    const GeneralRow* const rows_;
+    const NormalRelax* const relax_;
+    Eight* const impulses_;
+    const std::array<F, kResponses> response_;
     const std::uint32_t count_;
     std::array<F, kPoints> velocity_, change_;
 };

@@ -46,7 +46,7 @@ class Inverse<F, true> {
 /// The bodies' inverse inertias side by side: sweeps then need not look for them.
 template <class F>
 [[gnu::always_inline]] inline void gather_inertias(const Lane<F>& lane,
-                                                   const std::vector<BodyInertia>& inertias,
+                                                   const std::vector<InverseInertia>& inertias,
                                                    const std::array<std::uint32_t, kLanes>& places,
                                                    LaneInertia& to) {
     for (std::size_t part = 0; part < 6; ++part) {
@@ -187,37 +187,32 @@ constexpr std::size_t in_triangle(std::size_t i, std::size_t j) {
 
 template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
           std::size_t... kColumn>
-[[gnu::always_inline]] inline F row_product(const Lane<F>& lane,
-                                            const std::array<Eight, kEntries>& symmetric,
+[[gnu::always_inline]] inline F row_product(const std::array<F, kEntries>& symmetric,
                                             const std::array<F, kSize>& x, F to,
                                             std::index_sequence<kColumn...>) {
     constexpr std::size_t kHalf = kSize / 2;
-    F other = lane.load(symmetric[in_triangle<kSize>(kRow, 0)]) * x[0];
+    F other = symmetric[in_triangle<kSize>(kRow, 0)] * x[0];
     ((kColumn == 0 ? void()
       : kColumn < kHalf
-          ? void(other = fused(lane.load(symmetric[in_triangle<kSize>(kRow, kColumn)]), x[kColumn],
-                               other))
-          : void(to = fused(lane.load(symmetric[in_triangle<kSize>(kRow, kColumn)]), x[kColumn],
-                            to))),
+          ? void(other = fused(symmetric[in_triangle<kSize>(kRow, kColumn)], x[kColumn], other))
+          : void(to = fused(symmetric[in_triangle<kSize>(kRow, kColumn)], x[kColumn], to))),
      ...);
     return to + other;
 }
 /// to += S x, of the symmetric matrix S.
 template <std::size_t kSize, class F, std::size_t kEntries, std::size_t... kRow>
-[[gnu::always_inline]] inline void add_product(const Lane<F>& lane,
-                                               const std::array<Eight, kEntries>& symmetric,
+[[gnu::always_inline]] inline void add_product(const std::array<F, kEntries>& symmetric,
                                                const std::array<F, kSize>& x,
                                                std::array<F, kSize>& to,
                                                std::index_sequence<kRow...> rows) {
-    to = {row_product<kSize, kRow>(lane, symmetric, x, to[kRow], rows)...};
+    to = {row_product<kSize, kRow>(symmetric, x, to[kRow], rows)...};
 }
 template <std::size_t kSize, class F, std::size_t kEntries>
-[[gnu::always_inline]] inline void add_product(const Lane<F>& lane,
-                                               const std::array<Eight, kEntries>& symmetric,
+[[gnu::always_inline]] inline void add_product(const std::array<F, kEntries>& symmetric,
                                                const std::array<F, kSize>& x,
                                                std::array<F, kSize>& to) {
     static_assert(kEntries == kSize * (kSize + 1) / 2);
-    add_product(lane, symmetric, x, to, std::make_index_sequence<kSize>());
+    add_product(symmetric, x, to, std::make_index_sequence<kSize>());
 }
 
 /// A block of three, xx xy xz yy yz zz, times v.

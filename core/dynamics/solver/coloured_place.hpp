@@ -46,16 +46,23 @@ template <class F, std::size_t kSize>
 [[gnu::always_inline]] inline void add(const std::array<F, kSize>& x, std::array<F, kSize>& to) {
     for (std::size_t i = 0; i < kSize; ++i) to[i] += x[i];
 }
-template <class F, std::size_t kSize>
+template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline std::array<F, kSize> load_all(const Lane<F>& lane,
-                                                            const std::array<Eight, kSize>& from) {
+                                                            const std::array<Entry, kSize>& from) {
     std::array<F, kSize> x;
     for (std::size_t i = 0; i < kSize; ++i) x[i] = lane.load(from[i]);
     return x;
 }
-template <class F, std::size_t kSize>
+template <std::size_t kCount, class F, class Entry>
+[[gnu::always_inline]] inline std::array<F, kCount> first_of(const Lane<F>& lane,
+                                                             const Entry* from) {
+    std::array<F, kCount> x;
+    for (std::size_t i = 0; i < kCount; ++i) x[i] = lane.load(from[i]);
+    return x;
+}
+template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline void store_all(const Lane<F>& lane, const std::array<F, kSize>& x,
-                                             std::array<Eight, kSize>& to) {
+                                             std::array<Entry, kSize>& to) {
     for (std::size_t i = 0; i < kSize; ++i) lane.store(x[i], to[i]);
 }
 
@@ -66,9 +73,9 @@ template <class F, std::size_t kSize>
 }
 
 /// to += k x
-template <class F, std::size_t kSize>
+template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,
-                                              const std::array<Eight, kSize>& x, F k,
+                                              const std::array<Entry, kSize>& x, F k,
                                               std::array<F, kSize>& to) {
     for (std::size_t i = 0; i < kSize; ++i) to[i] = fused(lane.load(x[i]), k, to[i]);
 }

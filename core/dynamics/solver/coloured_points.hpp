@@ -169,27 +169,27 @@ template <class F>
 /// @return the impulse to start from
 template <class F>
 [[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
-                                             NormalRow& row) {
+                                             NormalRow& row, NormalRelax& relax, Eight& impulse) {
     lane.store(fours[0], row.target);
-    lane.store(fours[1], row.relax_target);
-    lane.store(fours[2], row.keep);
-    lane.store(fours[3], row.impulse);
+    lane.store(fours[1], relax.target);
+    lane.store(fours[2], relax.keep);
+    lane.store(fours[3], impulse);
     return fours[3];
 }
 
 /// One step of a normal impulse at the change v of the normal velocity.
 /// @return its change
 template <class F>
-[[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, NormalRow& row, F v, bool soft,
-                                             Pass pass, F& impulse) {
-    const bool relax = pass == Pass::kRelax;
-    const F old = lane.load(row.impulse);
-    const F target = lane.load(relax ? row.relax_target : row.target);
+[[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, const NormalRow& row,
+                                             const NormalRelax& relax, F v, bool soft, Pass pass,
+                                             Eight& impulse) {
+    const bool relaxes = pass == Pass::kRelax;
+    const F old = lane.load(impulse);
+    const F target = lane.load(relaxes ? relax.target : row.target);
     F change = lane.load(row.mass) * (target - v);
-    if (soft && !relax) change = lane.load(row.keep) * (old + change) - old;
+    if (soft && !relaxes) change = lane.load(relax.keep) * (old + change) - old;
     change = larger(change, -old);  // sooner there than by the impulse
-    impulse = old + change;
-    lane.store(impulse, row.impulse);
+    lane.store(old + change, impulse);
     return change;
 }
 

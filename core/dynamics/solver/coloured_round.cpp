@@ -73,7 +73,8 @@ template <bool kFriction, bool kRolling, class F>
     store(lane, n, row.normal);
     const LaneVec4<F> along = load(lane, points.along);
     make_normal(lane, along[2], response, F{}, row.along);
-    const F normal_impulse = start_normal(lane, along, row.along);
+    const F normal_impulse = start_normal(lane, along, row.along, coloured.round_relax[batch],
+                                          coloured.round_impulses.normal[batch]);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -88,7 +89,7 @@ template <bool kFriction, bool kRolling, class F>
         const LaneVec4<F> last = load(lane, points.impulse);
         const LaneVec4<F> tangent =
             clamped<F>(last - dot(n, last) * n, lane.load(friction.friction) * normal_impulse);
-        store(lane, tangent, friction.impulse);
+        store(lane, tangent, coloured.round_impulses.tangent[batch]);
         turn(n, tangent, arm_a, arm_b, a, b);
         impulse = impulse + tangent;
     }
@@ -121,24 +122,27 @@ template <bool kFriction, bool kRolling, class F>
     LaneBodies<F> bodies_a(lane, coloured.changes.data(), coloured.round[batch].a);
     LaneBodies<F> bodies_b(lane, coloured.changes.data(), coloured.round[batch].b);
     Motion<F> a = bodies_a.template load<kFriction>(), b = bodies_b.template load<kFriction>();
-    RoundRow& row = coloured.round_rows[batch];
+    const RoundRow& row = coloured.round_rows[batch];
     const LaneVec4<F> n = load(lane, row.normal);
 
     const LaneVec4<F> v = b.velocity - a.velocity;
     const F along = dot(n, v);
     const bool soft = stage.simulation.settings.solver == Solver::kSoft;
-    F normal_impulse;
-    const F change = solve_normal(lane, row.along, along, soft, sweep.pass, normal_impulse);
+    Eight& impulse = coloured.round_impulses.normal[batch];
+    const F change = solve_normal(lane, row.along, coloured.round_relax[batch], along, soft,
+                                  sweep.pass, impulse);
+    const F normal_impulse = lane.load(impulse);
     LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {
-        RoundFriction& friction = coloured.round_friction[batch];
+        const RoundFriction& friction = coloured.round_friction[batch];
+        std::array<Eight, 4>& tangents = coloured.round_impulses.tangent[batch];
         const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
         const LaneVec4<F> slip =
             load(lane, friction.slip) + slip_of(lane, n, v, along, friction, a, b);
-        const LaneVec4<F> old = load(lane, friction.impulse);
+        const LaneVec4<F> old = load(lane, tangents);
         const LaneVec4<F> tangent = clamped<F>(sum(old, -lane.load(friction.mass), slip),
                                                lane.load(friction.friction) * normal_impulse);
-        store(lane, tangent, friction.impulse);
+        store(lane, tangent, tangents);
         tangent_change = tangent - old;
         turn(n, tangent_change, arm_a, arm_b, a, b);
     }
@@ -219,7 +223,8 @@ void take_recalled_round(const ColouredStage& stage, BatchRange batches) {
         const Float8 along = dot(n, v);
         NormalRow& row = coloured.round_rows[i].along;
         lane.store(lane.load(row.target) - along, row.target);
-        lane.store(lane.load(row.relax_target) - along, row.relax_target);
+        NormalRelax& relax = coloured.round_relax[i];
+        lane.store(lane.load(relax.target) - along, relax.target);
         if (!coloured.friction) continue;
         RoundFriction& friction = coloured.round_friction[i];
         const LaneVec4<Float8> slip = slip_of(lane, n, v, along, friction, a, b);
@@ -232,7 +237,7 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
-            const float normal = coloured.round_rows[i].along.impulse.lane[k];
+            const float normal = coloured.round_impulses.normal[i].lane[k];
             if (stage.cause == Cause::kBlow) {
                 stage.step.hit[batch.contact[k]] = normal > 0;
                 continue;
@@ -243,7 +248,8 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
             if (!coloured.friction) continue;
             for (int axis = 0; axis < 4; ++axis)
                 impulse.tangent[axis] =
-                    stage.mass_unit * coloured.round_friction[i].impulse[axis].lane[k];
+                    stage.mass_unit *
+                    coloured.round_impulses.tangent[i][static_cast<std::size_t>(axis)].lane[k];
             if (coloured.rolling)
                 stage.step.angular_impulses[batch.contact[k]] =
                     stage.mass_unit * bivector_in_lane(coloured.round_rolling[i].impulse, k);

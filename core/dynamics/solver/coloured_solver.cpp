@@ -4,21 +4,32 @@ namespace tesserae {
 namespace {
 
 /// Of a body that is isotropic, in a scene where others are not.
-BodyInertia packed(double inverse) {
-    BodyInertia inertia;
+InverseInertia packed(double inverse) {
+    InverseInertia inertia;
     for (std::size_t k : {0, 6, 11, 15, 18, 20})
         inertia.entry[k / 4][k % 4] = static_cast<float>(inverse);
     return inertia;
 }
 
-Bivector angular_change(const BodyChange& change) {
+template <class Change>
+Bivector angular_change(const Change& change) {
     const auto& w = change.first_planes;
     return {w[0], w[1], w[2], w[3], change.rest[0], change.rest[1]};
 }
 
-Vec4 velocity_change(const BodyChange& change) {
+template <class Change>
+Vec4 velocity_change(const Change& change) {
     const auto& v = change.velocity;
     return assembled(v[0], v[1], v[2], v[3]);
+}
+
+InverseInertia packed(const BivectorMap& map, double factor) {
+    InverseInertia inertia;
+    std::size_t k = 0;
+    for (int i = 0; i < 6; ++i)
+        for (int j = i; j < 6; ++j, ++k)
+            inertia.entry[k / 4][k % 4] = static_cast<float>(map(i, j) * factor);
+    return inertia;
 }
 
 }  // namespace
@@ -64,16 +75,6 @@ bool has_jammed(const ColouredStage& stage, Range bodies) {
     return has_jammed(before, after);
 }
 
-void add_recalled(const ColouredStage& stage, Range bodies) {
-    StepData& step = stage.step;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = step.coloured.bodies[i];
-        step.velocity[id] += velocity_change(step.coloured.recalled[i]);
-        if (stage.simulation.needs.turning)
-            step.angular_velocity[id] += angular_change(step.coloured.recalled[i]);
-    }
-}
-
 void add_changes(const ColouredStage& stage, Range bodies) {
     StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
@@ -88,16 +89,18 @@ void add_changes(const ColouredStage& stage, Range bodies) {
 
 void begin_push(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        coloured.last_changes[i] = coloured.changes[i];
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyChange& change = coloured.changes[i];
+        coloured.last_changes[i] = {change.velocity, change.first_planes, change.rest};
+    }
 }
 
 void take_push_back(const ColouredStage& stage, Range bodies) {
     StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = step.coloured.bodies[i];
-        const BodyChange &pushed = step.coloured.changes[i],
-                         &before = step.coloured.last_changes[i];
+        const BodyChange& pushed = step.coloured.changes[i];
+        const PackedChange& before = step.coloured.last_changes[i];
         step.velocity[id] -= velocity_change(pushed) - velocity_change(before);
         if (stage.simulation.needs.turning)
             step.angular_velocity[id] =

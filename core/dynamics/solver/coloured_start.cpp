@@ -8,13 +8,16 @@ namespace {
 
 using namespace lanes;
 
-/// A pair's responses.
+/// A pair's responses to impulses along the normal and across it: symmetric.
+template <class F>
+struct Responses {
+    std::array<F, 10> along;
+    std::array<F, 21> across;
+};
 /// @param turns   else its one point is the centre, where impulses do not turn
-/// @param along   its response to impulses along the normal
 template <bool kFriction, class F, bool kUneven>
 [[gnu::always_inline]] inline void make_frame(const Lane<F>& lane, const LanePair<F, kUneven>& pair,
-                                              const Frame<F>& frame, bool turns,
-                                              std::array<Eight, 10>& along,
+                                              const Frame<F>& frame, bool turns, Responses<F>& to,
                                               PairFriction* friction) {
     const F one = F{} + 1.0f;
     const Response<F, kUneven> response(pair);
@@ -24,7 +27,7 @@ template <bool kFriction, class F, bool kUneven>
             unit.along[i] = one;
             unit = frame.from_world(response(frame.to_world(unit)));
         }
-        for (std::size_t j = i; j < 4; ++j) lane.store(unit.along[j], along[in_triangle<4>(i, j)]);
+        for (std::size_t j = i; j < 4; ++j) to.along[in_triangle<4>(i, j)] = unit.along[j];
         if constexpr (kFriction) store_all(lane, unit.across, friction->coupled[i]);
     }
     if constexpr (kFriction)
@@ -34,20 +37,20 @@ template <bool kFriction, class F, bool kUneven>
                 unit.across[i] = one;
                 unit = frame.from_world(response(frame.to_world(unit)));
             }
-            for (std::size_t j = i; j < 6; ++j)
-                lane.store(unit.across[j], friction->response[in_triangle<6>(i, j)]);
+            for (std::size_t j = i; j < 6; ++j) to.across[in_triangle<6>(i, j)] = unit.across[j];
         }
+    if constexpr (kFriction) store_all(lane, to.across, friction->response);
 }
 
 /// The masses of rolling or twisting: of a block of three of a response.
 /// @param first   of its rows
 template <std::size_t kSize, class F, std::size_t kEntries>
 [[gnu::always_inline]] inline void make_turning(const Lane<F>& lane,
-                                                const std::array<Eight, kEntries>& response,
+                                                const std::array<F, kEntries>& response,
                                                 std::size_t first, std::array<Eight, 6>& mass,
                                                 Eight& step_mass) {
     const auto entry = [&](std::size_t i, std::size_t j) {
-        return lane.load(response[in_triangle<kSize>(first + i, first + j)]);
+        return response[in_triangle<kSize>(first + i, first + j)];
     };
     std::array<F, 6> inverse;
     F step;
@@ -77,15 +80,14 @@ template <class F>
 
 /// A block of three of the tangents at a place, from what each does there.
 template <class F>
-[[gnu::always_inline]] inline std::array<F, 6> tangent_response(const Lane<F>& lane,
-                                                                const PairFriction& friction,
+[[gnu::always_inline]] inline std::array<F, 6> tangent_response(const std::array<F, 21>& across,
                                                                 const Place<F>& at) {
     std::array<LaneVec4<F>, 3> K;
     for (std::size_t i = 0; i < 3; ++i) {
         LaneVec4<F> direction{};
         direction[i] = F{} + 1.0f;
         std::array<F, 6> change{};
-        add_product(lane, friction.response, seen_from_centre(at, direction), change);
+        add_product(across, seen_from_centre(at, direction), change);
         K[i] = across_at(at, change);
     }
     return {K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]};
@@ -97,7 +99,7 @@ template <class F>
 [[gnu::always_inline]] inline void store_responses(const Lane<F>& lane, ColouredIslands& coloured,
                                                    const Batch& batch, std::uint32_t point,
                                                    const std::array<F, 4>& motion) {
-    Eight* const row = &coloured.point_response[batch.response + point * (point + 1) / 2];
+    RoughEight* const row = &coloured.point_response[batch.response + point * (point + 1) / 2];
     for (std::uint32_t k = 0; k <= point; ++k)
         lane.store(along_at(place_of(lane, coloured.rows[batch.row + k]), motion), row[k]);
 }
@@ -105,7 +107,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline void store_padding(const Lane<F>& lane, ColouredIslands& coloured,
                                                  const Batch& batch) {
-    Eight* const first = &coloured.point_response[batch.response];
+    RoughEight* const first = &coloured.point_response[batch.response];
     for (std::uint32_t k = batch.rows * (batch.rows + 1) / 2; k < responses_of(batch.rows); ++k)
         lane.store(F{}, first[k]);
 }
@@ -133,14 +135,13 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     }
     const LanePair<F, kUneven> pair(lane, coloured, index);
     PairFriction* friction = kFriction ? &coloured.pair_friction[index] : nullptr;
-    std::array<Eight, 10> response;
+    Responses<F> response;
     make_frame<kFriction>(lane, pair, frame, batch.rows > 1 || kRolling, response, friction);
     if constexpr (kRolling) {
         PairRolling& rolling = coloured.pair_rolling[index];
-        store_all(lane, load_all(lane, response), rolling.response);
-        make_turning<4, F>(lane, response, 1, rolling.rolling_mass, rolling.rolling_step);
-        make_turning<6, F>(lane, friction->response, 3, rolling.twisting_mass,
-                           rolling.twisting_step);
+        store_all(lane, response.along, rolling.response);
+        make_turning<4>(lane, response.along, 1, rolling.rolling_mass, rolling.rolling_step);
+        make_turning<6>(lane, response.across, 3, rolling.twisting_mass, rolling.twisting_step);
     }
     for (std::uint32_t k = 0; k < batch.rows; ++k) {
         GeneralRow& row = coloured.rows[batch.row + k];
@@ -149,7 +150,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         store_all(lane, at, row.at);
         const std::array<F, 4> unit = {one, at[0], at[1], at[2]};
         std::array<F, 4> change{};
-        add_product(lane, response, unit, change);
+        add_product(response.along, unit, change);
         store_responses(lane, coloured, batch, k, change);
         make_normal(lane, load(lane, pairs.points[k].along)[2], along_at(at, change), least,
                     row.along);
@@ -157,7 +158,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
             GeneralFriction& tangents = coloured.general_friction[batch.row + k];
             std::array<F, 6> inverse;
             F slide;
-            invert<F>(tangent_response(lane, *friction, at), least, inverse, slide);
+            invert<F>(tangent_response(response.across, at), least, inverse, slide);
             store_all(lane, inverse, tangents.mass);
             lane.store(slide, tangents.slide_mass);
         }
@@ -182,7 +183,9 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     for (std::uint32_t k = 0; k < batch.rows; ++k) {
         GeneralRow& row = coloured.rows[batch.row + k];
         const Place<F> at = place_of(lane, row);
-        const F normal_impulse = start_normal(lane, load(lane, pairs.points[k].along), row.along);
+        const F normal_impulse =
+            start_normal(lane, load(lane, pairs.points[k].along), row.along,
+                         coloured.relax[batch.row + k], coloured.impulses.normal[batch.row + k]);
         const std::array<F, 4> unit = {F{} + 1.0f, at[0], at[1], at[2]};
         for (std::size_t i = 0; i < 4; ++i)
             impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);
@@ -192,7 +195,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
             tangent[3] = F{};
             const F most = lane.load(coloured.pair_friction[index].friction) * normal_impulse;
             tangent = clamped<F>(tangent, most);
-            store(lane, tangent, coloured.general_friction[batch.row + k].impulse);
+            store(lane, tangent, coloured.impulses.tangent[batch.row + k]);
             add(seen_from_centre(at, tangent), impulse.across);
         }
         if constexpr (kRolling)

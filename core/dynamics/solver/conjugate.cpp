@@ -11,47 +11,46 @@ namespace {
 using lanes::Float8;
 constexpr lanes::Lane<Float8> kAll;
 
-/// Calls visit(impulse, place in the lists of last impulses and directions) for all eights of
-/// impulses of a row of round bodies, the normal one first.
-template <class Visit>
-void visit_round(ColouredIslands& coloured, std::size_t row, const Visit& visit) {
-    std::size_t place = row * impulses_of_round(coloured);
-    visit(coloured.round_rows[row].along.impulse, place++);
-    if (!coloured.friction) return;
-    for (Eight& impulse : coloured.round_friction[row].impulse) visit(impulse, place++);
+/// Calls visit(impulse, last, direction) for all eights of impulses of rows of a batch.
+template <std::size_t kTangents, class Visit>
+[[gnu::always_inline]] inline void visit_rows(RowImpulses<kTangents>& impulses,
+                                              RowImpulses<kTangents>& lasts,
+                                              RowImpulses<kTangents>& directions,
+                                              std::uint32_t first, std::uint32_t rows,
+                                              const Visit& visit) {
+    for (std::uint32_t row = first; row < first + rows; ++row)
+        visit(impulses.normal[row], lasts.normal[row], directions.normal[row]);
+    if (impulses.tangent.empty()) return;
+    for (std::uint32_t row = first; row < first + rows; ++row)
+        for (std::size_t i = 0; i < kTangents; ++i)
+            visit(impulses.tangent[row][i], lasts.tangent[row][i], directions.tangent[row][i]);
 }
-/// The same of the rows of batches of any bodies.
+template <class Visit>
+void visit_round(ColouredIslands& coloured, BatchRange batches, const Visit& visit) {
+    visit_rows(coloured.round_impulses, coloured.last_round, coloured.round_direction,
+               batches.begin, batches.end - batches.begin, visit);
+}
 template <class Visit>
 void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& visit) {
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const Batch& batch = coloured.general[i];
-        for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
-            std::size_t place = row * impulses_of_general(coloured);
-            visit(coloured.rows[row].along.impulse, place++);
-            if (!coloured.friction) continue;
-            for (Eight& impulse : coloured.general_friction[row].impulse) visit(impulse, place++);
-        }
-    }
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        visit_rows(coloured.impulses, coloured.last_general, coloured.general_direction,
+                   coloured.general[i].row, coloured.general[i].rows, visit);
 }
 
 /// Keeps impulses where they are, without a direction.
-auto begin(std::vector<Eight>& lasts, std::vector<Eight>& directions) {
-    return [last = lasts.data(), direction = directions.data()](const Eight& impulse,
-                                                                std::size_t place) {
-        last[place] = impulse;
-        direction[place] = {};
-    };
-}
-/// Eight impulses go from where they were along the new direction.
-auto go(std::vector<Eight>& lasts, std::vector<Eight>& directions, float carried, float length) {
-    return [last = lasts.data(), direction = directions.data(), carried, length](
-               Eight& impulse, std::size_t place) {
-        const Float8 from = kAll.load(last[place]);
-        const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction[place]);
+constexpr auto begin = [](const Eight& impulse, Eight& last, Eight& direction) {
+    last = impulse;
+    direction = {};
+};
+/// Impulses go from where they were along the new direction.
+auto go(float carried, float length) {
+    return [carried, length](Eight& impulse, Eight& last, Eight& direction) {
+        const Float8 from = kAll.load(last);
+        const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction);
         const Float8 here = from + length * along;
-        kAll.store(along, direction[place]);
+        kAll.store(along, direction);
         kAll.store(here, impulse);
-        kAll.store(here, last[place]);
+        kAll.store(here, last);
     };
 }
 
@@ -59,13 +58,11 @@ auto go(std::vector<Eight>& lasts, std::vector<Eight>& directions, float carried
 /// velocities of the load's start less the targets.
 class Work {
   public:
-    Work(const std::vector<Eight>& last, const std::vector<Eight>& direction, std::size_t place)
-        : last_(&last[place]), direction_(&direction[place]) {}
-    /// Of the next eight impulses.
-    void add(const Eight& impulse, Float8 velocity) {
+    [[gnu::always_inline]] void add(const Eight& impulse, const Eight& last, const Eight& direction,
+                                    Float8 velocity) {
         const Float8 now = kAll.load(impulse);
-        of_step_ = simd::fused(kAll.load(*last_++) - now, velocity, of_step_);
-        of_direction_ = simd::fused(-kAll.load(*direction_++), velocity, of_direction_);
+        of_step_ = simd::fused(kAll.load(last) - now, velocity, of_step_);
+        of_direction_ = simd::fused(-kAll.load(direction), velocity, of_direction_);
         of_all_ = simd::fused(now, velocity, of_all_);
     }
     void store(std::array<Eight, 3>& to) const {
@@ -75,22 +72,28 @@ class Work {
     }
 
   private:
-    const Eight *last_, *direction_;
     Float8 of_step_{}, of_direction_{}, of_all_{};
 };
 
-/// Of a row of any bodies.
-void add_row(const ColouredIslands& coloured, std::uint32_t index, std::uint32_t row, Work& work) {
-    const NormalRow& along = coloured.rows[row].along;
-    const lanes::Place<Float8> at = lanes::place_of(kAll, coloured.rows[row]);
-    const std::array<Float8, 4> start = lanes::load_all(kAll, coloured.frames[index].motion);
-    work.add(along.impulse, lanes::along_at(at, start) - kAll.load(along.target));
-    if (!coloured.friction) return;
-    const std::array<Float8, 6> across =
-        lanes::load_all(kAll, coloured.pair_friction[index].motion);
-    const lanes::LaneVec4<Float8> slip = lanes::across_at(at, across);
-    const auto& tangent = coloured.general_friction[row].impulse;
-    for (std::size_t i = 0; i < 3; ++i) work.add(tangent[i], slip[i]);
+/// Of a batch of any bodies.
+Work work_of_general(const ColouredIslands& coloured, std::uint32_t index) {
+    const auto& [normal, tangent] = coloured.impulses;
+    const RowImpulses<3>&last = coloured.last_general, &direction = coloured.general_direction;
+    const Batch& batch = coloured.general[index];
+    const std::array<Float8, 4> along = lanes::load_all(kAll, coloured.frames[index].motion);
+    std::array<Float8, 6> across{};
+    if (coloured.friction) across = lanes::load_all(kAll, coloured.pair_friction[index].motion);
+    Work work;
+    for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
+        const lanes::Place<Float8> at = lanes::place_of(kAll, coloured.rows[row]);
+        work.add(normal[row], last.normal[row], direction.normal[row],
+                 lanes::along_at(at, along) - kAll.load(coloured.rows[row].along.target));
+        if (!coloured.friction) continue;
+        const lanes::LaneVec4<Float8> slip = lanes::across_at(at, across);
+        for (std::size_t i = 0; i < 3; ++i)
+            work.add(tangent[row][i], last.tangent[row][i], direction.tangent[row][i], slip[i]);
+    }
+    return work;
 }
 
 using simd::Float4;
@@ -123,19 +126,23 @@ template <class Record>
     return (double{sums[0]} + sums[1]) + (double{sums[2]} + sums[3]);
 }
 
-/// A symmetric 6x6 matrix times the turning part of x.
+/// An inertia times the turning part of x.
 [[gnu::always_inline]] inline void turn(const BodyInertia& inertia, const Twelve& x, Twelve& to) {
-    const auto& e = inertia.entry;
+    const auto column = [&](std::size_t i) { return simd::same_bits<Float8>(inertia.column[i]); };
     const Float4 &w = x[1], &v = x[2];
-    const auto row = [&](float e0, float e1, float e2, float e3, float e4, float e5) {
-        return ((e0 * w[0] + e1 * w[1]) + (e2 * w[2] + e3 * w[3])) + (e4 * v[0] + e5 * v[1]);
-    };
-    to[1] = Float4{row(e[0][0], e[0][1], e[0][2], e[0][3], e[1][0], e[1][1]),
-                   row(e[0][1], e[1][2], e[1][3], e[2][0], e[2][1], e[2][2]),
-                   row(e[0][2], e[1][3], e[2][3], e[3][0], e[3][1], e[3][2]),
-                   row(e[0][3], e[2][0], e[3][0], e[3][3], e[4][0], e[4][1])};
-    to[2] = Float4{row(e[1][0], e[2][1], e[3][1], e[4][0], e[4][2], e[4][3]),
-                   row(e[1][1], e[2][2], e[3][2], e[4][1], e[4][3], e[5][0]), 0, 0};
+    const Float8 sum = (w[0] * column(0) + w[1] * column(1)) +
+                       (w[2] * column(2) + w[3] * column(3)) +
+                       (v[0] * column(4) + v[1] * column(5));
+    to[1] = __builtin_shufflevector(sum, sum, 0, 1, 2, 3);
+    to[2] = __builtin_shufflevector(sum, sum, 4, 5, 6, 7);
+}
+BodyInertia columns(const BivectorMap& map, double factor) {
+    BodyInertia inertia;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j)
+            inertia.column[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+                static_cast<float>(map(j, i) * factor);
+    return inertia;
 }
 
 /// The momentum of a change of the motion of a body in `bodies`.
@@ -149,8 +156,14 @@ template <class Record>
     return momentum;
 }
 
+[[gnu::always_inline]] inline double energy_of(const ColouredIslands& coloured, std::size_t body,
+                                               const Twelve& change) {
+    return 0.5 * product(change, momentum_of(coloured, body, change));
+}
+
 /// Without the masses in a record of changes.
-[[gnu::always_inline]] inline Twelve change_of(const BodyChange& record) {
+template <class Record>
+[[gnu::always_inline]] inline Twelve change_of(const Record& record) {
     Twelve change = load(record);
     change[2][2] = change[2][3] = 0;
     return change;
@@ -172,15 +185,12 @@ void take_recalled(const ColouredStage& stage, Range bodies) {
         const BodyId id = coloured.bodies[i];
         const TypeProperties& type = stage.simulation.type_of(id);
         if (coloured.turns_unevenly)
-            coloured.inertias[i] = type.isotropic
-                                       ? BodyInertia{}
-                                       : packed(world_map(type.inertia, type, stage.step.rotor[id]),
-                                                1 / stage.mass_unit);
+            coloured.inertias[i] =
+                type.isotropic ? BodyInertia{}
+                               : columns(world_map(type.inertia, type, stage.step.rotor[id]),
+                                         1 / stage.mass_unit);
         BodyChange& change = coloured.changes[i];
-        const Twelve recalled = change_of(change);
-        coloured.recalled[i] = change;
-        coloured.momentum[i] = {};
-        coloured.body_sums[i] = {0.5 * product(recalled, momentum_of(coloured, i, recalled)), 0, 0};
+        coloured.body_sums[i] = {energy_of(coloured, i, change_of(change)), 0, 0};
         change.velocity = change.first_planes = {};
         change.rest[0] = change.rest[1] = 0;
     }
@@ -189,45 +199,42 @@ void take_recalled(const ColouredStage& stage, Range bodies) {
 void begin_directions(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        coloured.last_changes[i] = coloured.changes[i];
+        store(load(coloured.changes[i]), coloured.last_changes[i]);
         coloured.direction[i] = {};
-        coloured.direction_momentum[i] = {};
     }
 }
 
 void begin_round_directions(const ColouredStage& stage, BatchRange batches) {
-    ColouredIslands& coloured = stage.step.coloured;
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-        visit_round(coloured, i, begin(coloured.last_round, coloured.round_direction));
+    visit_round(stage.step.coloured, batches, begin);
 }
 
 void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
-    ColouredIslands& coloured = stage.step.coloured;
-    visit_general(coloured, batches, begin(coloured.last_general, coloured.general_direction));
+    visit_general(stage.step.coloured, batches, begin);
 }
 
 void weigh_step(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const Twelve end = load(coloured.changes[i]);
-        const Twelve step = end - load(coloured.last_changes[i]);
-        const Twelve of_step = momentum_of(coloured, i, step), of_all = load(coloured.momentum[i]);
-        store(of_step, coloured.step_momentum[i]);
-        coloured.body_sums[i] = {-product(step, of_all),
-                                 -product(load(coloured.direction[i]), of_all),
-                                 0.5 * product(end, of_all + of_step)};
+        const Twelve start = change_of(coloured.last_changes[i]);
+        const Twelve end = change_of(coloured.changes[i]);
+        const Twelve of_start = momentum_of(coloured, i, start);
+        coloured.body_sums[i] = {-product(end - start, of_start),
+                                 -product(load(coloured.direction[i]), of_start),
+                                 energy_of(coloured, i, end)};
     }
 }
 
 void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
+    const auto& [normal, tangent] = coloured.round_impulses;
+    const RowImpulses<4>&last = coloured.last_round, &direction = coloured.round_direction;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        Work work(coloured.last_round, coloured.round_direction, i * impulses_of_round(coloured));
-        const NormalRow& along = coloured.round_rows[i].along;
-        work.add(along.impulse, -kAll.load(along.target));
+        Work work;
+        work.add(normal[i], last.normal[i], direction.normal[i],
+                 -kAll.load(coloured.round_rows[i].along.target));
         if (coloured.friction)
             for (std::size_t k = 0; k < 4; ++k)
-                work.add(coloured.round_friction[i].impulse[k],
+                work.add(tangent[i][k], last.tangent[i][k], direction.tangent[i][k],
                          kAll.load(coloured.round_friction[i].slip[k]));
         work.store(coloured.round_work[i]);
     }
@@ -235,14 +242,8 @@ void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
 
 void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const Batch& batch = coloured.general[i];
-        Work work(coloured.last_general, coloured.general_direction,
-                  batch.row * impulses_of_general(coloured));
-        for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row)
-            add_row(coloured, i, row, work);
-        work.store(coloured.general_work[i]);
-    }
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        work_of_general(coloured, i).store(coloured.general_work[i]);
 }
 
 void find_direction(const ColouredStage& stage, Range bodies, float carried) {
@@ -250,12 +251,9 @@ void find_direction(const ColouredStage& stage, Range bodies, float carried) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const Twelve step = load(coloured.changes[i]) - load(coloured.last_changes[i]);
         const Twelve along = step + carried * load(coloured.direction[i]);
-        const Twelve of_along =
-            load(coloured.step_momentum[i]) + carried * load(coloured.direction_momentum[i]);
         store(along, coloured.direction[i]);
-        store(of_along, coloured.direction_momentum[i]);
         const Twelve velocity = {along[0], Float4{}, Float4{}};
-        coloured.body_sums[i] = {product(along, of_along), product(velocity, velocity), 0};
+        coloured.body_sums[i] = {2 * energy_of(coloured, i, along), product(velocity, velocity), 0};
     }
 }
 
@@ -265,28 +263,15 @@ void go_along(const ColouredStage& stage, Range bodies, float length) {
         const Twelve here = load(coloured.last_changes[i]) + length * load(coloured.direction[i]);
         store(here, coloured.changes[i]);
         store(here, coloured.last_changes[i]);
-        store(load(coloured.momentum[i]) + length * load(coloured.direction_momentum[i]),
-              coloured.momentum[i]);
     }
 }
 
 void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length) {
-    ColouredIslands& coloured = stage.step.coloured;
-    const auto move = go(coloured.last_round, coloured.round_direction, carried, length);
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) visit_round(coloured, i, move);
+    visit_round(stage.step.coloured, batches, go(carried, length));
 }
 
 void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length) {
-    ColouredIslands& coloured = stage.step.coloured;
-    visit_general(coloured, batches,
-                  go(coloured.last_general, coloured.general_direction, carried, length));
-}
-
-void go_from_end(const ColouredStage& stage, Range bodies) {
-    ColouredIslands& coloured = stage.step.coloured;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        store(load(coloured.momentum[i]) + load(coloured.step_momentum[i]), coloured.momentum[i]);
-    begin_directions(stage, bodies);
+    visit_general(stage.step.coloured, batches, go(carried, length));
 }
 
 }  // namespace tesserae

@@ -28,19 +28,19 @@ namespace tesserae {
 /// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
-/// What the impulses that the load starts from have changed is taken out of the changes, until
-/// add_recalled(): what is left is small, and so is its rounding, of which directions would grow.
-/// Rows come first: take_recalled_round(), take_recalled_general(). The energy of what is taken out
-/// goes into body_sums.
+/// What the impulses that the load starts from have changed is no change any more: what is left is
+/// small, and so is its rounding, of which directions would grow. The rows' starts have it first,
+/// by take_recalled_round() and take_recalled_general(), and the velocities, by add_changes(). Its
+/// energy goes into body_sums.
 void take_recalled(const ColouredStage& stage, Range bodies);
 
-/// What the next pair of sweeps goes on from, without a direction.
+/// What the next pair of sweeps goes on from, without a direction: where the last one ended.
 void begin_directions(const ColouredStage& stage, Range bodies);
 void begin_round_directions(const ColouredStage& stage, BatchRange batches);
 void begin_general_directions(const ColouredStage& stage, BatchRange batches);
 
-/// After a pair: the momentum of what it changed, and r.z, r.p_last and the energy at its end: of
-/// each body, into body_sums; of each batch, into round_work and general_work.
+/// After a pair: r.z, r.p_last and the energy at its end: of each body, into body_sums; of each
+/// batch, into round_work and general_work.
 void weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);
@@ -55,7 +55,5 @@ void find_direction(const ColouredStage& stage, Range bodies, float carried);
 void go_along(const ColouredStage& stage, Range bodies, float length);
 void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length);
 void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length);
-/// The same where the direction is given up: from where the pair ended.
-void go_from_end(const ColouredStage& stage, Range bodies);
 
 }  // namespace tesserae

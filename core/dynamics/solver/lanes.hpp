@@ -29,6 +29,12 @@ struct Lane<Float8> {
     [[gnu::always_inline]] void store(Float8 x, Eight& to) const {
         std::memcpy(to.lane.data(), &x, sizeof x);
     }
+    [[gnu::always_inline]] Float8 load(const RoughEight& from) const {
+        return simd::from_half(simd::same_bits<simd::Half8>(from.lane));
+    }
+    [[gnu::always_inline]] void store(Float8 x, RoughEight& to) const {
+        to = {simd::same_bits<std::array<std::uint16_t, kLanes>>(simd::to_half(x))};
+    }
 };
 template <>
 struct Lane<float> {
@@ -36,6 +42,12 @@ struct Lane<float> {
     std::size_t first;
     [[gnu::always_inline]] float load(const Eight& from) const { return from.lane[first]; }
     [[gnu::always_inline]] void store(float x, Eight& to) const { to.lane[first] = x; }
+    [[gnu::always_inline]] float load(const RoughEight& from) const {
+        return simd::from_half(from.lane[first]);
+    }
+    [[gnu::always_inline]] void store(float x, RoughEight& to) const {
+        to.lane[first] = simd::to_half(x);
+    }
 };
 
 // ---- four floats of eight records, transposed ----

@@ -40,17 +40,20 @@ std::uint32_t run_length(const ContactList& contacts, std::size_t begin) {
     return static_cast<std::uint32_t>(end - begin);
 }
 
+template <std::size_t kTangents>
+void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents>& impulses) {
+    resize_anew(impulses.normal, rows);
+    resize_anew(impulses.tangent, friction ? rows : 0);
+}
+
 void size_directions(ColouredIslands& coloured) {
-    resize_anew(coloured.recalled, coloured.bodies.size());
     resize_anew(coloured.direction, coloured.bodies.size());
-    for (auto* const list :
-         {&coloured.momentum, &coloured.step_momentum, &coloured.direction_momentum})
-        resize_anew(*list, coloured.bodies.size());
+    if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
     resize_anew(coloured.body_sums, coloured.bodies.size());
     for (auto* const list : {&coloured.last_round, &coloured.round_direction})
-        resize_anew(*list, coloured.round.size() * impulses_of_round(coloured));
+        size_impulses(coloured.round.size(), coloured.friction, *list);
     for (auto* const list : {&coloured.last_general, &coloured.general_direction})
-        resize_anew(*list, coloured.general_rows * impulses_of_general(coloured));
+        size_impulses(coloured.general_rows, coloured.friction, *list);
     resize_anew(coloured.round_work, coloured.round.size());
     resize_anew(coloured.general_work, coloured.general.size());
 }
@@ -125,15 +128,18 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     resize_anew(coloured.last_changes, coloured.bodies.size());
     if (has_conjugates(simulation)) size_directions(coloured);
     if (coloured.turns_unevenly) {
-        resize_anew(coloured.inertias, coloured.bodies.size());
         resize_anew(coloured.inverse_inertias, coloured.bodies.size());
         resize_anew(coloured.pair_inertias, coloured.general.size());
     }
     if (simulation.settings.solver == Solver::kSoft)
         resize_anew(coloured.angular_velocity, coloured.bodies.size());
+    size_impulses(coloured.round.size(), coloured.friction, coloured.round_impulses);
+    size_impulses(coloured.general_rows, coloured.friction, coloured.impulses);
     resize_anew(coloured.round_rows, coloured.round.size());
+    resize_anew(coloured.round_relax, coloured.round.size());
     resize_anew(coloured.frames, coloured.general.size());
     resize_anew(coloured.rows, coloured.general_rows);
+    resize_anew(coloured.relax, coloured.general_rows);
     resize_anew(coloured.point_response, coloured.point_responses);
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());

@@ -17,6 +17,12 @@ struct alignas(32) Eight {
     std::array<float, kLanes> lane = {};
 };
 
+/// The same in half the memory, to one part in 500: of what only decides how fast sweeps come
+/// nearer to the solution, and not which one it is. See simd::to_half().
+struct alignas(16) RoughEight {
+    std::array<std::uint16_t, kLanes> lane = {};
+};
+
 // What the coloured solver keeps of a coloured island: velocities as changes since the sub-step's
 // start, impulses, and rows of eight contacts, in float. Impulses and masses are in units of
 // ColouredIslands::mass_unit, so that neither leaves float's range.
@@ -29,15 +35,18 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
-/// What a change of a body's motion changes of its momentum, angular momentum: as BodyChange, in
-/// which it times a motion is twice an energy [J over the mass unit]; the last two are 0.
-struct alignas(16) BodyMomentum {
+/// The same in as little memory as it takes.
+struct alignas(16) PackedChange {
     std::array<float, 4> velocity = {}, first_planes = {}, rest = {};
 };
 
-/// World inertia or its inverse: the upper triangle of a symmetric 6x6 matrix, row by row.
-struct alignas(32) BodyInertia {
+/// Inverse world inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
+struct alignas(32) InverseInertia {
     std::array<std::array<float, 4>, 6> entry = {};  ///< three unused
+};
+/// World inertia, column by column.
+struct alignas(32) BodyInertia {
+    std::array<std::array<float, 8>, 6> column = {};  ///< two rows unused
 };
 
 /// Eight pairs of bodies that share no movable body; lanes beyond the last pair are all zero.
@@ -64,9 +73,18 @@ constexpr std::uint32_t responses_of(std::uint32_t rows) {
 /// The normal part of a row; see NormalPass. Targets are less the normal velocity of the start.
 struct NormalRow {
     Eight mass, target;
-    Eight impulse;
-    // Of Solver::kSoft alone.
-    Eight keep, relax_target;
+};
+/// What most sweeps do not need of it.
+struct NormalRelax {
+    Eight keep, target;
+};
+
+/// Impulses on b of rows with so many tangents, but for rolling: along the normal, and across it
+/// if there is friction.
+template <std::size_t kTangents>
+struct RowImpulses {
+    std::vector<Eight> normal;
+    std::vector<std::array<Eight, kTangents>> tangent;
 };
 
 /// A contact of two round bodies (or of one and a body that contacts do not move): the normal goes
@@ -79,8 +97,7 @@ struct RoundRow {
 struct RoundFriction {
     Eight arm_a, arm_b;  ///< from the centres to the contact point, along n and against it [m]
     Eight friction, mass;
-    std::array<Eight, 4> slip;     ///< of the start [m/s]
-    std::array<Eight, 4> impulse;  ///< on b
+    std::array<Eight, 4> slip;  ///< of the start [m/s]
 };
 
 /// Rolling and twisting of a round pair together, as bivectors.
@@ -100,7 +117,7 @@ struct PairFrame {
     std::array<Eight, 4> centre_a, centre_b;  ///< from the bodies' centres [m]
     std::array<Eight, 4> motion;              ///< of b against a at the start, along the normal
 };
-/// Of bodies that do not turn alike in all planes: what BodyInertia has of each lane's.
+/// Of bodies that do not turn alike in all planes: what InverseInertia has of each lane's.
 using LaneInertia = std::array<Eight, 21>;
 struct PairInertia {
     LaneInertia a, b;
@@ -110,8 +127,8 @@ struct PairInertia {
 struct PairFriction {
     Eight friction;
     std::array<Eight, 6> motion;
-    std::array<Eight, 21> response;               ///< to impulses across the normal: symmetric
-    std::array<std::array<Eight, 6>, 4> coupled;  ///< to impulses along the normal
+    std::array<RoughEight, 21> response;               ///< to impulses across the normal: symmetric
+    std::array<std::array<RoughEight, 6>, 4> coupled;  ///< to impulses along the normal
 };
 /// A contact of any two bodies. Its height above the frame's centre is left out: points of one pair
 /// that bear a load are in one plane, but for their overlaps.
@@ -120,9 +137,8 @@ struct GeneralRow {
     NormalRow along;
 };
 struct GeneralFriction {
-    std::array<Eight, 6> mass;     ///< xx xy xz yy yz zz
-    Eight slide_mass;              ///< below the inverse of the largest response
-    std::array<Eight, 3> impulse;  ///< on b
+    std::array<RoughEight, 6> mass;  ///< xx xy xz yy yz zz
+    RoughEight slide_mass;           ///< below the inverse of the largest response
 };
 
 /// Rolling, which turns in xn, yn, zn, and twisting, in xy, xz, yz.
@@ -159,39 +175,35 @@ struct ColouredIslands {
     std::vector<Batch> round, general;
     std::uint32_t general_rows = 0, point_responses = 0;  ///< of `general`, in all
 
-    std::vector<BodyChange> changes;   ///< of `bodies`
-    std::vector<BodyChange> recalled;  ///< likewise, before the changes of a load with directions
+    std::vector<BodyChange> changes;  ///< of `bodies`
     // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
-    // with, x, what the pair added, z, and the direction, p.
-    std::vector<BodyChange> last_changes, direction;
-    std::vector<BodyMomentum> momentum, step_momentum, direction_momentum;  ///< of x, z and p
+    // with, x, and the direction, p.
+    std::vector<PackedChange> last_changes, direction;
     std::vector<std::array<double, 3>> body_sums;  ///< of `bodies`: items of sums
-    std::vector<Eight> last_round, last_general, round_direction, general_direction;
+    RowImpulses<4> last_round, round_direction;
+    RowImpulses<3> last_general, general_direction;
     std::vector<std::array<Eight, 3>> round_work, general_work;  ///< likewise of each batch
-    /// Of `bodies`, if any turns unevenly.
-    std::vector<BodyInertia> inertias, inverse_inertias;
+    // Of `bodies`, if any turns unevenly.
+    std::vector<InverseInertia> inverse_inertias;
+    std::vector<BodyInertia> inertias;          ///< for directions
     std::vector<Bivector> angular_velocity;     ///< of `bodies`, as solved; Solver::kSoft
+    RowImpulses<4> round_impulses;              ///< of `round`, in world axes
+    RowImpulses<3> impulses;                    ///< of `rows`, in the frames
     std::vector<RoundRow> round_rows;           ///< of `round`
+    std::vector<NormalRelax> round_relax;       ///< likewise
     std::vector<RoundFriction> round_friction;  ///< of `round`
     std::vector<RoundRolling> round_rolling;    ///< likewise
     std::vector<PairFrame> frames;              ///< of `general`
     std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
     std::vector<PairFriction> pair_friction;    ///< likewise
     std::vector<GeneralRow> rows;               ///< of `general`, see Batch::row
+    std::vector<NormalRelax> relax;             ///< likewise
     /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
     /// of the velocity along it at another; 0 for points that a batch does not have.
-    std::vector<Eight> point_response;
+    std::vector<RoughEight> point_response;
     std::vector<GeneralFriction> general_friction;  ///< likewise
     std::vector<PairRolling> pair_rolling;          ///< of `general`
     std::vector<GeneralRolling> general_rolling;    ///< of `rows`
 };
-
-/// Eights of impulses of a row but for rolling, with which there are no directions.
-inline std::size_t impulses_of_round(const ColouredIslands& coloured) {
-    return coloured.friction ? 5 : 1;
-}
-inline std::size_t impulses_of_general(const ColouredIslands& coloured) {
-    return coloured.friction ? 4 : 1;
-}
 
 }  // namespace tesserae

@@ -61,6 +61,41 @@ TEST(Simd, ProductSumIsRoundedOnceOrTwice) {
     }
 }
 
+/// The nearest of eight significant bits by arithmetic; ties to even, as nearbyint() has them.
+float rounded(float x) {
+    if (x == 0) return x;
+    int exponent;
+    const float part = std::frexp(x, &exponent);
+    const int bits = std::min(8, exponent + 126 + 7);  // of subnormal ones fewer
+    return std::ldexp(std::nearbyint(std::ldexp(part, bits)), exponent - bits);
+}
+
+TEST(Simd, HalvesAreTheNearestFloatsOfEightBits) {
+    std::mt19937_64 engine(5);
+    for (std::uint32_t upper = 0; upper < 0x10000; ++upper) {
+        const auto half = static_cast<std::uint16_t>(upper);
+        const float x = from_half(half);
+        if (!std::isfinite(x)) continue;
+        ASSERT_EQ(to_half(x), half);
+    }
+    for (int set = 0; set < 20000; ++set) {
+        Float8 v;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            // Half of them as close to a tie as can be.
+            auto any = static_cast<std::uint32_t>(engine());
+            if (engine() % 2 == 0) any = (any & 0xffff0000) + 0x7fff + engine() % 3;
+            if ((any >> 23 & 0xff) >= 0xfe) any &= 0xbfffffff;
+            v[i] = std::bit_cast<float>(any);
+        }
+        const Half8 halves = to_half(v);
+        const Float8 back = from_half(halves);
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            ASSERT_EQ(bits(back[i]), bits(rounded(v[i]))) << v[i];
+            ASSERT_EQ(halves[i], to_half(v[i]));
+        }
+    }
+}
+
 TEST(Simd, SetLanesAreStoredOneAfterTheOther) {
     const Float8 v = {10, 11, 12, 13, 14, 15, 16, 17};
     for (std::uint32_t set = 0; set < 256; ++set) {

@@ -99,7 +99,7 @@ TEST(ColouredSolver, HasTheSameBitsWithOneLaneAsWithEight) {
                 ASSERT_GT(many.end - many.begin, 4u);
                 EXPECT_EQ(one.step.coloured.round_friction.empty(), friction == 0);
                 EXPECT_EQ(one.step.coloured.round_rolling.empty(), rolling == 0);
-                EXPECT_EQ(one.step.coloured.inertias.empty(), spheres_only);
+                EXPECT_EQ(one.step.coloured.inverse_inertias.empty(), spheres_only);
                 Unsolved eight = one;
                 const auto work = [](Unsolved& world, LaneCount lanes) {
                     const Simulation& simulation = world.simulation;
@@ -139,7 +139,7 @@ TEST(ColouredSolver, MakesRowsOnceForABlowAndTheLoadAfterIt) {
             Unsolved anew = once;
             anew.step.has_rows[0] = 0;
             // Where they are made they take these from the bodies, else from the blow's rows.
-            for (BodyInertia& inertia : once.step.coloured.inverse_inertias) inertia = {};
+            for (InverseInertia& inertia : once.step.coloured.inverse_inertias) inertia = {};
             solve_coloured_island(once.simulation, once.step, 0, OneThread{});
             solve_coloured_island(anew.simulation, anew.step, 0, OneThread{});
             EXPECT_TRUE(same_bits(once.step.velocity, anew.step.velocity));
@@ -210,9 +210,11 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
                 add(bodies, type, second ? pair.b_position : Vec4(0, 0, 0, 0), velocity, omega);
             }
             // Friction and rolling friction leave 3/4 of each other's speed after an iteration. A
-            // coloured blow has half of the iterations.
+            // coloured blow has half of the iterations. Friction of 100 takes more (measured: 5e-4
+            // m/s left after 300).
+            const int load = friction > 1 ? 1000 : 300;
             const PhysicsSettings settings =
-                settings_of(soft ? Solver::kSoft : Solver::kImpulse, hit ? 200 : 300);
+                settings_of(soft ? Solver::kSoft : Solver::kImpulse, hit ? 200 : load);
             const StepData plain = solved(bodies, settings, kStep, kNoneColoured);
             const StepData coloured = solved(bodies, settings, kStep, 1);
             if (plain.contacts.empty()) continue;

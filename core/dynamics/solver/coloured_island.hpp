@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/dynamics/solver/coloured_kernels.hpp"
+
+// A coloured island as its passes see it: bodies and colours.
+namespace tesserae {
+
+/// Does the parts of a pass one after the other; parallel/ has one that uses all threads.
+struct OneThread {
+    /// Calls work(Range) for pieces of the bodies.
+    template <class Work>
+    void for_bodies(Range bodies, const Work& work) const {
+        work(bodies);
+    }
+    /// Calls work(BatchRange) for pieces of the batches.
+    /// @param points   of a batch, about
+    template <class Work>
+    void for_batches(BatchRange batches, std::size_t /*points*/, const Work& work) const {
+        if (batches.begin < batches.end) work(batches);
+    }
+    /// The same with results, of which it returns the largest, at least 0.
+    template <class Work>
+    double largest(BatchRange batches, std::size_t /*points*/, const Work& work) const {
+        return batches.begin < batches.end ? work(batches) : 0;
+    }
+};
+
+/// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
+void begin_changes(const ColouredStage& stage, Range bodies);
+/// step.blow_motion of the bodies: with the changes of the compression, not added yet.
+void keep_blow_motion(const ColouredStage& stage, Range bodies);
+/// Whether friction has in the compression, whose changes are not added yet; see can_jam().
+bool has_jammed(const ColouredStage& stage, Range bodies);
+/// Adds the changes to the velocities.
+void add_changes(const ColouredStage& stage, Range bodies);
+/// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
+/// velocity, as if by an impulse.
+void take_changes_back(const ColouredStage& stage, Range bodies);
+
+/// Keeps the changes of the load, and takes back what the push then changed.
+void begin_push(const ColouredStage& stage, Range bodies);
+void take_push_back(const ColouredStage& stage, Range bodies);
+
+/// One coloured island and its colours.
+class ColouredIsland {
+  public:
+    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause,
+                   bool friction = true)
+        : all_(step.coloured),
+          place_(step.islands.coloured[island]),
+          stage_{simulation, step,     all_.mass_unit[place_],
+                 cause,      friction, step.has_rows[island] != 0} {}
+
+    const ColouredStage& stage() const { return stage_; }
+    Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
+
+    /// Calls visit(batches of a colour, threads, lanes) for every colour in its turn. The last one
+    /// holds what is left over, which shares bodies: one thread and one lane.
+    template <class Threads, class Visit>
+    void for_colours(const Threads& threads, LaneCount lanes, bool backward,
+                     const Visit& visit) const {
+        const std::uint32_t first = all_.first_colour[place_];
+        const std::uint32_t count = all_.first_colour[place_ + 1] - first;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const std::uint32_t colour = backward ? count - 1 - i : i;
+            const ColourBatches& batches = all_.colours[first + colour];
+            if (colour + 1 < count)
+                visit(batches, threads, lanes);
+            else
+                visit(batches, OneThread{}, LaneCount::kOne);
+        }
+    }
+
+  private:
+    const ColouredIslands& all_;
+    std::uint32_t place_;
+    ColouredStage stage_;
+};
+
+/// Calls round(stage, batches) and general(stage, batches) for pieces of all batches.
+template <class Threads, class Round, class General>
+void for_all_rows(const ColouredIsland& island, const Threads& threads, const Round& round,
+                  const General& general) {
+    island.for_colours(threads, LaneCount::kOne, false,
+                       [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+                           at_work.for_batches(batches.round, 1, round);
+                           at_work.for_batches(batches.general, kManifoldPoints, general);
+                       });
+}
+
+}  // namespace tesserae

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/solver/coloured_island.hpp"
+#include "core/dynamics/solver/conjugate.hpp"
+
+namespace tesserae {
+
+/// Pairs of sweeps along conjugate directions, see conjugate.hpp.
+template <class Threads>
+class ConjugateDirections {
+  public:
+    ConjugateDirections(const ColouredIsland& island, const Threads& threads)
+        : island_(island), threads_(threads) {
+        const ColouredStage& stage = island.stage();
+        for_all_rows(
+            island, threads, [&](BatchRange some) { take_recalled_round(stage, some); },
+            [&](BatchRange some) { take_recalled_general(stage, some); });
+        for_bodies([](auto... of) { add_changes(of...); });
+        for_bodies([](auto... of) { take_recalled(of...); });
+        for (std::size_t i = island.bodies().begin; i < island.bodies().end; ++i)
+            rounding_ += kFloatStep * kFloatStep * stage.step.coloured.body_sums[i][0];
+        for_bodies([](auto... of) { begin_directions(of...); });
+    }
+    /// The direction after a pair of sweeps.
+    /// @return the largest change of a body's velocity by a step along it [m/s]
+    double find() {
+        const ColouredStage& stage = island_.stage();
+        for_bodies([](auto... of) { weigh_step(of...); });
+        Sums sums = {};  // r.z, r.p_last and the energy
+        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
+            for (std::size_t k = 0; k < 3; ++k) sums[k] += stage.step.coloured.body_sums[i][k];
+        rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
+        const Sums of_rows = work();
+        for (std::size_t k = 0; k < 3; ++k) sums[k] += of_rows[k];
+        const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
+        look_for_rise(ratio, sums[2]);
+        carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
+        for_bodies([this](auto... of) { find_direction(of..., carried_); });
+
+        double twice_energy = 0, fastest = 0;
+        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i) {
+            twice_energy += stage.step.coloured.body_sums[i][0];
+            fastest = std::max(fastest, stage.step.coloured.body_sums[i][1]);
+        }
+        const double length = (sums[0] + carried_ * sums[1]) / twice_energy;
+        holds_ = plain_ == 0 && length > 1 && sums[0] > rounding_;
+        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
+        slope_ = sums[0];
+        return length_ * std::sqrt(fastest);
+    }
+    /// From there on to the next pair.
+    void go_on() {
+        last_slope_ = holds_ ? slope_ : 0;
+        if (holds_) return for_bodies([this](auto... of) { go_along(of..., length_); });
+        plain_ = std::max(0, plain_ - 1);
+        for_bodies([](auto... of) { begin_directions(of...); });
+    }
+
+    // The rows' part of a pair, batch by batch as they are swept, while they are in the caches.
+    /// @param work   sweeps batches and returns what is left
+    template <class Work>
+    double sweep_round(BatchRange batches, Sweep sweep, const Work& work) const {
+        const ColouredStage& stage = island_.stage();
+        return one_by_one(batches, sweep, [&](BatchRange one) {
+            if (sweep.backward && holds_) go_along_round(stage, one, carried_, length_);
+            if (sweep.backward && !holds_) begin_round_directions(stage, one);
+            const double left = work(one);
+            if (!sweep.backward) weigh_round_step(stage, one);
+            return left;
+        });
+    }
+    template <class Work>
+    double sweep_general(BatchRange batches, Sweep sweep, const Work& work) const {
+        const ColouredStage& stage = island_.stage();
+        return one_by_one(batches, sweep, [&](BatchRange one) {
+            if (sweep.backward && holds_) go_along_general(stage, one, carried_, length_);
+            if (sweep.backward && !holds_) begin_general_directions(stage, one);
+            const double left = work(one);
+            if (!sweep.backward) weigh_general_step(stage, one);
+            return left;
+        });
+    }
+
+  private:
+    using Sums = std::array<double, 3>;
+    /// What is changed by less than this part of what is recalled, or has been changed, is
+    /// rounding, of which directions would grow.
+    static constexpr double kFloatStep = 1e-6;
+
+    /// After a step along a direction that led away from the solution there are none for a while.
+    /// @param ratio   of r.z to that before the step
+    void look_for_rise(double ratio, double energy) {
+        if (last_slope_ > 0 && !(energy <= last_energy_ && ratio <= kMostCarried)) {
+            plain_ = pause_;
+            pause_ = 2 * pause_;
+        }
+        last_energy_ = energy;
+    }
+    /// Calls work(stage, bodies).
+    template <class Work>
+    void for_bodies(const Work& work) const {
+        threads_.for_bodies(island_.bodies(), [&](Range bodies) { work(island_.stage(), bodies); });
+    }
+    /// @return the largest that work(a batch) returns
+    template <class Work>
+    double one_by_one(BatchRange batches, Sweep sweep, const Work& work) const {
+        double largest = 0;
+        for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+            const std::uint32_t batch = sweep.backward ? batches.end - 1 - (i - batches.begin) : i;
+            largest = std::max(largest, work(BatchRange{batch, batch + 1}));
+        }
+        return largest;
+    }
+    /// Sums of round_work and general_work, in the order of the batches for any number of threads.
+    Sums work() const {
+        const ColouredIslands& coloured = island_.stage().step.coloured;
+        Sums sums = {};
+        const auto add = [&](const auto& list, BatchRange batches) {
+            for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    for (const float x : list[i][k].lane) sums[k] += x;
+        };
+        island_.for_colours(OneThread{}, LaneCount::kOne, false,
+                            [&](const ColourBatches& batches, const auto&, LaneCount) {
+                                add(coloured.round_work, batches.round);
+                                add(coloured.general_work, batches.general);
+                            });
+        return sums;
+    }
+
+    const ColouredIsland& island_;
+    const Threads& threads_;
+    double slope_ = 0, last_slope_ = 0;  ///< r.z
+    double last_energy_ = 0;             ///< at the end of the last pair
+    double rounding_ = 0;                ///< of a slope
+    int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time
+    float carried_ = 0, length_ = 1;
+    bool holds_ = false;  ///< the direction
+};
+
+/// Sweeps that go along no directions.
+struct NoDirections {
+    template <class Work>
+    double sweep_round(BatchRange batches, Sweep, const Work& work) const {
+        return work(batches);
+    }
+    template <class Work>
+    double sweep_general(BatchRange batches, Sweep, const Work& work) const {
+        return work(batches);
+    }
+};
+
+}  // namespace tesserae
