@@ -107,20 +107,30 @@ double mean_speed(const World& world) {
 }
 
 /// Ten sweeps left them at 60 mm/s for ever.
+/// From starts that differ by nanometres: which of them come to rest is chance where sweeps are too
+/// few. Springs let boards sink in, take longer to end, and tremble at 4 sub-steps of 2 sweeps (by
+/// 10 to 25 mm/s from 6 of 8 starts).
 TEST(Rest, OfTenBoards) {
     struct Case {
         Solver solver;
         double speed, overlap;  ///< [m/s], [m]
     };
-    // Springs let them sink in, and take longer to end.
     const std::array cases = {Case{Solver::kImpulse, 1e-4, 0.5e-3},
-                              Case{Solver::kSoft, 1e-3, 2e-3}};
-    for (const auto& [solver, speed, overlap] : cases) {
-        World world(ten_boards(), solver == Solver::kSoft ? soft_settings() : PhysicsSettings{});
-        run(world, 1200);
-        EXPECT_LT(mean_speed(world), speed);
-        EXPECT_LT(world.step(kStep).penetration, overlap);
-    }
+                              Case{Solver::kSoft, 1e-4, 2e-3}};
+    for (const auto& [solver, speed, overlap] : cases)
+        for (int start = 0; start < 3; ++start) {
+            Bodies bodies = ten_boards();
+            for (std::size_t i = 0; i < bodies.size(); ++i)
+                if (bodies.is_movable(static_cast<BodyId>(i)))
+                    bodies.position[i].x() += 1e-9 * start * static_cast<double>(i);
+            PhysicsSettings settings =
+                solver == Solver::kSoft ? soft_settings() : PhysicsSettings{};
+            if (solver == Solver::kSoft) settings.substeps = 6;
+            World world(bodies, settings);
+            run(world, 1200);
+            EXPECT_LT(mean_speed(world), speed) << start;
+            EXPECT_LT(world.step(kStep).penetration, overlap);
+        }
 }
 
 /// Solved one by one they trembled at 12 mm/s.
