@@ -83,7 +83,8 @@ TEST(Simd, HalvesAreTheNearestFloatsOfEightBits) {
         for (std::size_t i = 0; i < kLanes; ++i) {
             // Half of them as close to a tie as can be.
             auto any = static_cast<std::uint32_t>(engine());
-            if (engine() % 2 == 0) any = (any & 0xffff0000) + 0x7fff + engine() % 3;
+            const auto aside = static_cast<std::uint32_t>(engine() % 3);
+            if (engine() % 2 == 0) any = (any & 0xffff0000) + 0x7fff + aside;
             if ((any >> 23 & 0xff) >= 0xfe) any &= 0xbfffffff;
             v[i] = std::bit_cast<float>(any);
         }
