@@ -85,11 +85,17 @@ constexpr std::size_t kBlowWork = 10000;
 /// more while they settle, as something hits something in every step.
 constexpr double kLargeBlowResidual = 1e-3;
 
-/// Sweeps over a coloured island's load, at least, usual 8: a wall that has come to rest starts to
-/// lean, by too little for the residual to see it. Fewer, and it does until the residual is above
+/// Sweeps over a load, at least, usual 8: what rests starts to lean, so slowly that a sweep changes
+/// little of it and the residual does not see it. Fewer, and it does until the residual is above
 /// the tolerance, and then takes hundreds of steps of many sweeps to come to rest again (at 2 and 4
-/// a wall of 20 rows takes 20 sweeps a step on average); more only cost more.
+/// a wall of 20 rows takes 20 sweeps a step on average), or sways for ever (three 120-cells on one
+/// another by 3 mm/s at any number of iterations); more only cost more.
 constexpr int kLeastSweeps = 8;
+
+/// Part of the tolerance below which a load that is solved one by one ends before that, usual 1e-3:
+/// one body on the ground is solved by a sweep or two. More, and slow swaying ends so too; less,
+/// and all that rests costs as much as what sways.
+constexpr double kHardlyAnything = 1e-3;
 
 /// How many times as steep a step along a direction may leave the energy, usual 4: the part of the
 /// last direction that the next one goes on with. More, and what it is conjugate to is no longer
@@ -109,10 +115,11 @@ constexpr double kLongestStep = 64;
 constexpr double kMostConjugateFriction = 1;
 
 /// Contacts from which on an island that is held (some body touches one that contacts do not move)
-/// is coloured and solved in float, eight at a time and along conjugate directions, usual 64; fewer
-/// are solved in double, one by one. More, and stacks of ten boards tremble (at 1024 by 10 mm/s,
-/// for 7 times the time); fewer, and lanes are empty.
-constexpr std::uint32_t kColouredFrom = 64;
+/// is coloured and solved in float, eight at a time and along conjugate directions, usual 32; fewer
+/// are solved in double, one by one. More, and small stacks tremble (at 64 towers of seven boxes by
+/// 6 to 40 mm/s, for 3 times the time; at 1024 stacks of ten boards by 10 mm/s, for 7 times the
+/// time); fewer, and lanes are empty (at 16 towers of two boxes take 3 times the time).
+constexpr std::uint32_t kColouredFrom = 32;
 
 /// The same where nothing is held: such an island keeps its momentum, in double to 1e-15 of it a
 /// step, in float to 1e-7.

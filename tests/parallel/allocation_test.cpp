@@ -16,11 +16,18 @@ namespace {
 
 using namespace tesserae::testing;
 
-/// One large island, beside stacks of two boxes, which are many small ones.
+/// One large island, of columns of spheres that touch, beside stacks of two and of five boxes, which
+/// are many small ones, solved one by one and coloured.
 Bodies resting_bodies(double rolling_friction) {
-    Bodies bodies = packed_spheres([](int) { return sphere_type(0.5, 1, 0.5); });
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    for (int i = 0; i < 6 * 6 * 6 * 6; ++i)
+        add(bodies, sphere_type(0.5, 1, 0.5),
+            {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
     for (int i = 0; i < 20; ++i)
         add(bodies, box_type(Vec4::Ones(), 10), {10 + 2.0 * (i / 2), 0.5 + i % 2, 0, 0});
+    for (int i = 0; i < 50; ++i)
+        add(bodies, box_type(Vec4::Ones(), 10), {10 + 2.0 * (i / 5), 0.5 + i % 5, 2, 0});
     for (BodyType& type : bodies.types) type.rolling_friction = rolling_friction;
     return bodies;
 }

@@ -56,16 +56,16 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "a5fa441dca31f2e3f668c8faa2af7f89");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "435749b1497ed5001fcc9238a6dfdeb9");
-    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "882619b622baea9b795e2c932f26507f");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "1324e5d2626667f35178513545d7aefb");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "4080397f3fb879cc7e9f94f614baac8f");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "c3af69669fb06e46798e8659fb6f4b50");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2", "physics.sleeping=true"};
-    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "b6abb831d7660487883a202cd9fefca9");
-    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "d1596900997ba18fa11f14f0ea69924e");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "8b9fd9f0ffc5c24ebf491e83525f4b58");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "dad67dec5067f7f4c41a9f8249a515ad");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "300be13738eea74f445fc03471affb1f");
 }
 
@@ -79,9 +79,9 @@ TEST_F(Golden, LargeIslandsMoveAsEver) {
     };
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2"};
-    expect("pile", 1000, 200, {}, "a7d922b81e52265993bf86642f6e32ca");
-    expect("pile", 1000, 200, soft, "fa9753805e6da71f9b81082c95fe29cc");
-    expect("pyramid", 200, 60, {}, "b5b1418c7a25e264783d1e8165194e48");
+    expect("pile", 1000, 200, {}, "814c47610f8d7a809d46f566d3b3edd7");
+    expect("pile", 1000, 200, soft, "aebb2494150c821738775729eeb5c431");
+    expect("pyramid", 200, 60, {}, "d40d8f36a4a035c053a22ecc9b714123");
     expect("pyramid", 200, 60, soft, "0f03f28c1e828924ef02d66445475a10");
 }
 
@@ -117,8 +117,8 @@ TEST_F(Golden, AFilmIsAsEver) {
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
-              "e5ac2375eb3ddc1db3c73896e676a96c");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "1fab98eefe23ce77ee0ca2665a1233e5");
+              "bb52c187c62474836f39304231bf75cd");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "acbe5328b967e47230d9b5c390d0d907");
 }
 
 }  // namespace

@@ -14,11 +14,17 @@ struct Effort {
     int sweeps = 0;
     double enough = -1;  ///< [m/s]; -1: all sweeps
     int every = 1;       ///< how many sweeps there are for a look at the residual
+    int least = 0;       ///< of sweeps, unless hardly anything is left: see kLeastSweeps
+
+    /// Whether so many sweeps are enough, the last of which had this residual [m/s].
+    bool is_done(int done, double residual) const {
+        return residual <= (done < least ? kHardlyAnything : 1) * enough;
+    }
 };
 /// Of what rests: its impulses are started from in the next sub-step, which goes on with them.
 inline Effort effort_of_load(const Simulation& simulation) {
     const double tolerance = simulation.settings.tolerance;
-    return {simulation.settings.iterations, tolerance > 0 ? tolerance : -1, 2};
+    return {simulation.settings.iterations, tolerance > 0 ? tolerance : -1, 2, kLeastSweeps};
 }
 /// Of what takes overlap away, after the load: nothing goes on with it.
 inline Effort effort_of_push(const Simulation& simulation) {
@@ -62,7 +68,7 @@ double iterate(Pass pass, const Effort& effort, const SweepAll& sweep_all) {
     for (int i = 0; i < effort.sweeps; ++i) {
         const Sweep sweep = sweep_of(pass, effort, i);
         residual = sweep_all(sweep);
-        if (sweep.measured && residual <= effort.enough) break;
+        if (sweep.measured && effort.is_done(i + 1, residual)) break;
     }
     return residual;
 }

@@ -92,7 +92,8 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
     ColouredIslands& coloured = step.coloured;
     place_.resize(simulation.bodies.size(), 0);
     list_pairs(simulation, step, island);
-    resize_anew(sorted_, pairs_.size());
+    // Large enough for the largest island: small ones come before and after it.
+    if (sorted_.size() < pairs_.size()) resize_anew(sorted_, pairs_.size());
     counting_sort(
         pairs_.size(), (kColours + 1) * kKinds, [&](std::size_t i) { return pairs_[i].bucket; },
         start_, [&](std::size_t i, std::size_t place) { sorted_[place] = pairs_[i]; });

@@ -24,7 +24,7 @@ struct PhysicsSettings {
     double duration = 1;            ///< [s]
     double steps_per_second = 240;  ///< [1/s]
     int substeps = 1;     ///< of equal length, a step: pairs are looked for once, contacts in each
-    int iterations = 20;  ///< sweeps of the contact solver over an island, a sub-step, at most
+    int iterations = 14;  ///< sweeps of the contact solver over an island, a sub-step, at most
     double tolerance = 1e-4;  ///< residual [m/s] below which its sweeps end; 0: all of them
     Solver solver = Solver::kImpulse;
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
