@@ -16,8 +16,8 @@ namespace {
 
 using namespace tesserae::testing;
 
-/// One large island, of columns of spheres that touch, beside stacks of two and of five boxes, which
-/// are many small ones, solved one by one and coloured.
+/// One large island, of columns of spheres that touch, beside stacks of two and of five boxes,
+/// which are many small ones, solved one by one and coloured.
 Bodies resting_bodies(double rolling_friction) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
