@@ -69,7 +69,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
                               : sweep_coloured(island, sweep, threads, lanes);
         if (sweep.backward || !directions || i + 1 == effort.sweeps) continue;
         const double left = std::max(residual, directions->find());
-        if (i + 1 >= kLeastSweeps && left <= effort.enough) break;
+        if (i + 1 >= effort.least && left <= effort.enough) break;
     }
     return residual;
 }

@@ -143,15 +143,21 @@ inline Bodies heap_of_spheres(int count, int across = 4) {
     return bodies;
 }
 
-/// A floor, and above it 6^4 spheres put down touching between walls: one large island.
+/// 6^4 spheres of radius 0.5, in columns that touch each other: one large island.
 /// @param type_of   the type of the i-th
+template <class TypeOf>
+void add_columns(Bodies& bodies, const TypeOf& type_of) {
+    for (int i = 0; i < 6 * 6 * 6 * 6; ++i)
+        add(bodies, type_of(i), {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+}
+
+/// A floor, and above it these columns between walls.
 template <class TypeOf>
 Bodies packed_spheres(const TypeOf& type_of) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
     add_walls(bodies, {0, 2, 3}, 3, 0.5);
-    for (int i = 0; i < 6 * 6 * 6 * 6; ++i)
-        add(bodies, type_of(i), {i % 6 - 2.5, i / 216 + 0.5, i / 6 % 6 - 2.5, i / 36 % 6 - 2.5});
+    add_columns(bodies, type_of);
     return bodies;
 }
 

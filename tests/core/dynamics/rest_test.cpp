@@ -144,8 +144,8 @@ TEST(Rest, OfTenBoards) {
         }
 }
 
-/// As soon as a sweep changed little of them they were left: those of five and six swayed by 0.3
-/// and 0.9 mm/s, solved one by one.
+/// As soon as a sweep changed little of them they were left: those of five to seven swayed by 0.07
+/// to 1 mm/s, solved one by one.
 TEST(Rest, OfSmallTowers) {
     for (int height = 2; height <= 8; ++height)
         for (const double gap : {0.0, 1e-3}) {
