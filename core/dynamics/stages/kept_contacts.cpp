@@ -16,7 +16,7 @@ namespace {
 
 using Keeps = KeptManifold::Keeps;
 
-/// Spare records are at most so many, or one part in so many of those that were kept.
+/// Spare records of a kind are at most so many, or one part in so many of those that are kept.
 constexpr std::size_t kFewSpares = 64, kSpareManifolds = 16;
 
 BodyPair pair_of(const KeptManifold& m) { return {m.a, m.b}; }
@@ -118,17 +118,22 @@ class KeptContacts {
     }
 
     /// Takes what the list still had away behind the last one that is kept.
-    void end() { kept_.resize(count_); }
+    void end() {
+        for (std::size_t i = count_; i < kept_.size(); ++i) spare_.put(kept_[i]);
+        kept_.resize(count_);
+    }
 
   private:
-    /// Most are in the list at this place already: see SpareManifolds::collect(). To count who has
-    /// one more and one less costs as much as to move it.
+    /// Most are in the list at this place already. To count who has one more and one less costs as
+    /// much as to move it.
     template <class Manifold>
     void keep(Manifold&& manifold) {
-        if (count_ == kept_.size())
+        if (count_ == kept_.size()) {
             kept_.push_back(std::forward<Manifold>(manifold));
-        else if (kept_[count_] != manifold)
+        } else if (kept_[count_] != manifold) {
+            spare_.put(kept_[count_]);
             kept_[count_] = std::forward<Manifold>(manifold);
+        }
         ++count_;
     }
 
@@ -220,27 +225,26 @@ class KeptContacts {
 
 }  // namespace
 
-void SpareManifolds::collect(std::vector<KeptManifolds>& lists,
-                             const std::vector<KeptManifolds>& last) {
+void SpareManifolds::begin(std::size_t manifolds) {
+    const std::size_t most = std::max(kFewSpares, manifolds / kSpareManifolds);
     for (Spares& spares : spares_) {
-        spares.list.resize(spares.list.size() - std::min(spares.list.size(), spares.taken));
-        spares.taken = 0;
-        spares.list.reserve(kFewSpares);
+        auto& [list, put, taken, count] = spares;
+        list.resize(list.size() - std::min(list.size(), taken));
+        list.reserve(most);
+        for (std::size_t i = 0; i < std::min(count, put.size()) && list.size() < most; ++i)
+            list.push_back(std::move(put[i]));
+        put.clear();
+        put.resize(most);
+        taken = count = 0;
     }
-    std::size_t count = 0;
-    for (const KeptManifolds& list : lists) count += list.size();
-    const std::size_t most = std::max(kFewSpares, count / kSpareManifolds);
-    for (std::size_t i = 0; i < lists.size(); ++i) {
-        const std::size_t in_last = i < last.size() ? last[i].size() : 0;
-        for (std::size_t k = 0; k < lists[i].size(); ++k) {
-            std::shared_ptr<const KeptManifold>& manifold = lists[i][k];
-            if (k < in_last && manifold == last[i][k]) continue;
-            auto own = std::const_pointer_cast<KeptManifold>(std::move(manifold));
-            if (!own || own.use_count() > 1) continue;
-            Spares& spares = spares_[own->points.capacity() > 0 ? 1 : 0];
-            if (spares.list.size() < most) spares.list.push_back(std::move(own));
-        }
-    }
+}
+
+void SpareManifolds::put(std::shared_ptr<const KeptManifold>& manifold) {
+    if (manifold.use_count() != 1) return;
+    Spares& spares = spares_[manifold->points.capacity() > 0 ? 1 : 0];
+    const std::size_t place = std::atomic_ref(spares.count).fetch_add(1);
+    if (place < spares.put.size())
+        spares.put[place] = std::const_pointer_cast<KeptManifold>(std::move(manifold));
 }
 
 std::shared_ptr<KeptManifold> SpareManifolds::take(bool has_points) {
@@ -252,7 +256,9 @@ std::shared_ptr<KeptManifold> SpareManifolds::take(bool has_points) {
 
 void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifolds>& last,
                 SpareManifolds& spare) {
-    spare.collect(step.kept, last);
+    std::size_t manifolds = 0;
+    for (const KeptManifolds& list : step.kept) manifolds += list.size();
+    spare.begin(manifolds);
     step.kept.resize((step.pairs.size() + grain - 1) / grain);
     step.filled.clear();
     for (std::uint32_t i = 0; i < last.size(); ++i)
@@ -263,7 +269,10 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
                         const std::vector<KeptManifolds>& last, std::span<KeptManifolds> lists,
                         SpareManifolds& spare, std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
-    for (KeptManifolds& unused : lists.subspan(1)) unused.clear();
+    for (KeptManifolds& unused : lists.subspan(1)) {
+        for (auto& manifold : unused) spare.put(manifold);
+        unused.clear();
+    }
     KeptManifolds& kept = lists.front();
     Search search(last, step.filled, step.pairs[pairs.begin]);
     KeptContacts contacts(simulation, step, kept, spare, list);

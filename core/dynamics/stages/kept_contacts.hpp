@@ -26,17 +26,21 @@ class SpareManifolds {
     SpareManifolds(const SpareManifolds&) {}
     SpareManifolds& operator=(const SpareManifolds&) { return *this; }
 
-    /// Takes what nobody else has out of lists that are written anew; most of many is given back.
-    /// What `last` has at the same place stays: most of it will be kept there again.
-    void collect(std::vector<KeptManifolds>& lists, const std::vector<KeptManifolds>& last);
-    /// One that is spare or new. Any number of threads may call it.
+    /// Before any is put or taken in a search for contacts: what was put in the last one can be
+    /// taken; most of many is given back.
+    /// @param manifolds   how many are kept, about
+    void begin(std::size_t manifolds);
+    /// Any number of threads may call the others. Takes one that its list has no place for any
+    /// more, if nobody else has it.
+    void put(std::shared_ptr<const KeptManifold>& manifold);
+    /// One that is spare or new.
     /// @param has_points   it should have memory for points
     std::shared_ptr<KeptManifold> take(bool has_points);
 
   private:
     struct Spares {
-        std::vector<std::shared_ptr<KeptManifold>> list;
-        std::size_t taken = 0;  ///< from its end, since collect()
+        std::vector<std::shared_ptr<KeptManifold>> list, put;
+        std::size_t taken = 0, count = 0;  ///< from the end of `list`; of `put`; since begin()
     };
     std::array<Spares, 2> spares_;  ///< without and with memory for points
 };

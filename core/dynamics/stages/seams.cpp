@@ -40,7 +40,7 @@ void Seams::correct(const Simulation& simulation, StepData& step, Schedule& sche
         if (end - begin > 1) judge_.judge(simulation, step, {begin, end});
         begin = end;
     }
-    if (!judge_.corrections.empty()) splice(step);
+    if (!judge_.corrections.empty()) replace(step);
 }
 
 /// Every meeting is one of either body.
@@ -69,26 +69,22 @@ void Seams::list_meetings(const StepData& step, Schedule& schedule, const Choose
 }
 
 /// Of two corrections of one pair, for either body, that holds which turns the normal more.
-void Seams::splice(StepData& step) {
+void Seams::replace(StepData& step) {
     std::vector<SeamCorrection>& corrections = judge_.corrections;
     std::sort(corrections.begin(), corrections.end(),
               [](const SeamCorrection& c, const SeamCorrection& d) {
                   return std::tie(c.begin, c.cosine, c.first) <
                          std::tie(d.begin, d.cosine, d.first);
               });
-    corrected_.restart();
+    replacements_.clear();
     std::uint32_t done = 0;
-    const auto copy = [&](const auto& from, std::uint32_t begin, std::uint32_t end) {
-        for (std::uint32_t i = begin; i < end; ++i) corrected_.push_back(from[i]);
-    };
     for (const SeamCorrection& c : corrections) {
         if (c.begin < done) continue;
-        copy(step.contacts, done, c.begin);
-        copy(judge_.contacts, c.first, c.last);
+        replacements_.push_back(
+            {c.begin, c.end, std::span(judge_.contacts).subspan(c.first, c.last - c.first)});
         done = c.end;
     }
-    copy(step.contacts, done, static_cast<std::uint32_t>(step.contacts.size()));
-    std::swap(step.contacts, corrected_);
+    step.contacts.replace(replacements_);
 }
 
 }  // namespace tesserae

@@ -20,13 +20,13 @@ class Seams {
   private:
     template <class Choose>
     void list_meetings(const StepData& step, Schedule& schedule, const Choose& choose);
-    void splice(StepData& step);
+    void replace(StepData& step);
 
     ChunkedList<Meeting> lists_;
     std::vector<Meeting> meetings_;        ///< ascending (body, begin)
     std::vector<std::uint8_t> is_marked_;  ///< of every body: the judge has to look at it
     SeamJudge judge_;
-    ContactList corrected_;
+    std::vector<ContactList::Replacement> replacements_;
 };
 
 }  // namespace tesserae
