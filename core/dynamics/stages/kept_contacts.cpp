@@ -159,7 +159,7 @@ class KeptContacts {
                                                          : Keeps::kNoFace;
         }
         const bool has_points = keeps == Keeps::kNormalOfA || keeps == Keeps::kNormalOfB;
-        const std::shared_ptr<KeptManifold> manifold = spare_.take(has_points);
+        const std::shared_ptr<KeptManifold> manifold = record(has_points);
         KeptManifold& m = *manifold;
         m.a = pair.a, m.b = pair.b, m.offset = at.offset, m.rotor = at.rotor;
         m.keeps = keeps, m.normal = normal;
@@ -174,6 +174,14 @@ class KeptContacts {
         }
         list_.resize(first);
         return manifold;
+    }
+
+    /// Two bodies that are found anew in every step have the record of the step before the last.
+    std::shared_ptr<KeptManifold> record(bool has_points) {
+        if (count_ < kept_.size() && kept_[count_].use_count() == 1 &&
+            has_points == (kept_[count_]->points.capacity() > 0))
+            return std::const_pointer_cast<KeptManifold>(std::move(kept_[count_]));
+        return spare_.take(has_points);
     }
 
     /// See Contact.
