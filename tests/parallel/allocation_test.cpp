@@ -1,4 +1,4 @@
-// What the engine takes from operator new in a step of a pile that has settled.
+// What the engine takes from operator new in a step of bodies that have settled, or slide.
 
 #include <gtest/gtest.h>
 
@@ -64,6 +64,22 @@ TEST(Allocations, AreNoneInASettledStep) {
             for (const int steps : sleeping ? std::vector{60, 130} : std::vector{60})
                 threads.run([&] { EXPECT_EQ(allocations_after(world, steps), 0u) << sleeping; });
         }
+}
+
+/// So fast that every manifold is found anew in every step, so slow that it is kept.
+TEST(Allocations, AreNoneWhereAllSlides) {
+    Bodies bodies;
+    BodyType floor = box_type({700, 1, 4, 4});
+    floor.fixed_position = floor.fixed_rotation = true;
+    add(bodies, floor, {300, -0.5, 0, 0});
+    for (int i = 0; i < 200; ++i)
+        add(bodies, box_type(Vec4::Ones()), {3.0 * i, 0.5, 0, 0}, {0, 0, 0.3, 0});
+    for (BodyType& type : bodies.types) type.friction = 0;
+    World serial(bodies, PhysicsSettings{});
+    EXPECT_EQ(allocations_after(serial, 60), 0u);
+    ParallelWorld world(bodies, PhysicsSettings{});
+    Threads threads(2);
+    threads.run([&] { EXPECT_EQ(allocations_after(world, 60), 0u); });
 }
 
 }  // namespace
