@@ -152,10 +152,10 @@ class ContactList {
             by.shared += shared_by(contacts) - (shared_at(end) - shared_at(begin));
             moves_.push_back({{end, shared_at(end)}, {next, shared_at(next)}, by});
         }
+        grow(points_, size_, size_ + by.point, 1);
+        grow(shared_, shared_size_, shared_size_ + by.shared, 1);
         size_ += by.point;
         shared_size_ += by.shared;
-        if (points_.size() < size_) points_.resize(size_);
-        if (shared_.size() < shared_size_) shared_.resize(shared_size_);
         move(points_, &Start::point,
              [](Point& point, const Start& way) { point.shared += place_of(way.shared); });
         move(shared_, &Start::shared,
