@@ -8,15 +8,20 @@
 namespace tesserae {
 namespace {
 
+/// 0 to count - 1.
+unsigned draw(unsigned count, std::mt19937& random) {
+    return std::uniform_int_distribution<unsigned>(0, count - 1)(random);
+}
+
 /// Contacts of one pair: up to eight, of up to three normals.
 std::vector<Contact> random_contacts(BodyId a, BodyId b, std::mt19937& random, unsigned least) {
-    std::vector<Contact> list(std::uniform_int_distribution<unsigned>(least, 8)(random));
+    std::vector<Contact> list(least + draw(9 - least, random));
     Vec4 normal = Vec4::UnitX();
     std::uint32_t feature = 0;
     for (Contact& c : list) {
-        if (random() % 3 == 0) normal = Vec4::Unit(static_cast<int>(random() % 4));
+        if (draw(3, random) == 0) normal = Vec4::Unit(draw(4, random));
         c.normal = normal, c.point = Vec4::Random(), c.separation = 1e-3 * c.point[0];
-        c.a = a, c.b = b, c.feature = feature += 1 + random() % 5;
+        c.a = a, c.b = b, c.feature = feature += 1 + draw(5, random);
     }
     return list;
 }
@@ -45,15 +50,15 @@ void expect_equal(const ContactList& list, const ContactList& expected) {
 TEST(ContactList, ReplacesContactsAsIfItHadBeenMadeOfTheNewOnes) {
     std::mt19937 random(15);
     for (int round = 0; round < 2000; ++round) {
-        const BodyId pairs = random() % 12;
-        const unsigned part = 1 + random() % 3;
+        const BodyId pairs = draw(12, random);
+        const unsigned part = 1 + draw(3, random);
         std::vector<Contact> before, after;
         std::vector<std::vector<Contact>> by(pairs);
         std::vector<ContactList::Replacement> replacements;
         for (BodyId pair = 0; pair < pairs; ++pair) {
             const std::vector<Contact> old = random_contacts(pair, pair + 1, random, 1);
             by[pair] = old;
-            if (random() % part == 0) {
+            if (draw(part, random) == 0) {
                 by[pair] = random_contacts(pair, pair + 1, random, 0);
                 replacements.push_back({before.size(), before.size() + old.size(), by[pair]});
             }
