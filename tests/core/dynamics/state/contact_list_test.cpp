@@ -13,7 +13,7 @@ unsigned draw(unsigned count, std::mt19937& random) {
     return std::uniform_int_distribution<unsigned>(0, count - 1)(random);
 }
 
-/// Contacts of one pair: up to eight, of up to three normals.
+/// Contacts of one pair: up to eight, whose normals change now and then.
 std::vector<Contact> random_contacts(BodyId a, BodyId b, std::mt19937& random, unsigned least) {
     std::vector<Contact> list(least + draw(9 - least, random));
     Vec4 normal = Vec4::UnitX();
