@@ -80,6 +80,13 @@ Bodies tower(const std::vector<double>& masses, const Vec4& place = Vec4::Zero()
     return bodies;
 }
 
+Bodies small_tower(int count, double size) {
+    Bodies bodies = floor_and();
+    for (int i = 0; i < count; ++i)
+        add(bodies, box_type(Vec4::Constant(size), 1), {0, size * (i + 0.5), 0, 0});
+    return bodies;
+}
+
 Bodies pyramid(int rows) {
     Bodies bodies = floor_and();
     for (int row = 0; row < rows; ++row)
@@ -223,6 +230,16 @@ Bodies row_of_balls(int count, double mass, double restitution, bool wall) {
     return bodies;
 }
 
+/// The same of boxes with gaps between them.
+Bodies row_of_boxes(int count, double mass, double gap) {
+    Bodies bodies;
+    add(bodies, plane_type(-Vec4::UnitX(), -(1 + gap) * count, 0, 0), Vec4::Zero());
+    for (int i = 0; i < count; ++i)
+        add(bodies, box_type(Vec4::Ones(), 1), {0.5 + (1 + gap) * i, 0, 0, 0});
+    add(bodies, box_type(Vec4::Ones(), mass), {-4, 0, 0, 0}, {10, 0, 0, 0});
+    return bodies;
+}
+
 /// Restitution 0 but for the last three.
 std::vector<ExtremeCase> blows() {
     std::vector<ExtremeCase> cases;
@@ -235,6 +252,8 @@ std::vector<ExtremeCase> blows() {
     for (const double mass : {20.0, 100.0, 1000.0})
         cases.push_back(blow(fmt::format("ball of {:g} kg hits six of 1 kg before a wall", mass),
                              row_of_balls(6, mass, 0, true), Vec4::UnitX(), false));
+    cases.push_back(blow("box of 20 kg hits six of 1 kg, gaps of 3 mm, before a wall",
+                         row_of_boxes(6, 20, 0.003), Vec4::UnitX(), false));
     cases.push_back(blow("ball of 100 kg hits one of 1 kg before a wall, restitution 0.9",
                          row_of_balls(1, 100, 0.9, true), Vec4::UnitX(), false));
     cases.push_back(blow("ball hits four others, restitution 1", row_of_balls(4, 1, 1, false),
@@ -384,8 +403,12 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
                                 tower({1, ratio}), 1, 4));
         cases.push_back(staying(fmt::format("two boxes, the lower {:g} times heavier", ratio),
                                 tower({ratio, 1}), 1, 4));
+        cases.push_back(staying(
+            fmt::format("two boxes, the upper {:g} times heavier, put down 1 mm above", ratio),
+            tower({1, ratio}, Vec4::Zero(), 1e-3), 1, 4));
     }
     const std::vector<double> forty(40, 1000.0);
+    cases.push_back(staying("tower of 20 boxes of 10 cm, 4 s", small_tower(20, 0.1), 0.1, 4));
     cases.push_back(staying("tower of 40 boxes, 10 s", tower(forty), 1, 10));
     cases.push_back(staying("tower of 40 boxes, gaps of 0.3 mm, 10 s",
                             tower(forty, Vec4::Zero(), 3e-4), 1, 10));

@@ -19,6 +19,7 @@
 #include "parallel/trace.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/load/load.hpp"
+#include "scenes/process/memory.hpp"
 
 namespace tesserae::bench {
 namespace {
@@ -106,6 +107,7 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "usage: scaling SCENE BODIES THREADS SETTLE STEPS REPEATS\n");
         return 2;
     }
+    tesserae::scenes::return_large_memory();
     const int most = std::atoi(argv[3]);
     auto scene = scene_of(argv[1], std::strtoull(argv[2], nullptr, 10));
     const std::string where = fmt::format("{},{}", argv[1], argv[2]);

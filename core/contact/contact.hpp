@@ -33,6 +33,9 @@ struct PairContacts {
     BodyId a, b;   ///< a < b
     bool swapped;  ///< the function's first shape is b's
     std::vector<Contact>& list;
+    /// Of a pair without points that its function knows more of: how far apart the bodies are at
+    /// least [m], as true as the function's distances.
+    double apart = 0;
 
     /// @param normal  unit, from the function's first shape to its second
     void add(std::uint32_t feature, const Vec4& normal, double separation, const Vec4& point) {

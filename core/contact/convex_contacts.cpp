@@ -235,7 +235,8 @@ double gap_along(const ConvexBody& a, const ConvexBody& b, const Vec4& direction
 void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSeparation& nearest,
                      double size, const Vec4& origin, double margin, PairContacts& out) {
     const double radii = a.radius + b.radius;
-    if (!(nearest.distance - radii <= margin)) return;
+    out.apart = nearest.distance - radii;
+    if (!(out.apart <= margin)) return;
     Vec4 normal = nearest.normal;
     double distance = nearest.distance;
     thread_local Scratch scratch;

@@ -104,7 +104,8 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
     const Mat4 turn_a = to_matrix(pose_a.rotor), turn_b = to_matrix(pose_b.rotor);
     const Vec4 between = pose_b.position - pose_a.position;
     const double size = bounding_radius(a) + bounding_radius(b);
-    if (!(stable_norm(between) - size <= margin)) return;
+    out.apart = stable_norm(between) - size;
+    if (!(out.apart <= margin)) return;
     const PlacedCore<A> core_a{a, turn_a, Vec4::Zero()};
     const PlacedCore<B> core_b{b, turn_b, between};
     const auto piece_a = [&](const Vec4& direction, SurfacePiece& piece) {

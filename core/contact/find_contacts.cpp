@@ -35,22 +35,22 @@ concept NamesFeaturesOverCell = requires(const A& a, const B& b, const Vec4& nor
 
 }  // namespace
 
-void find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
-                   const Shape& shape_b, const Pose& pose_b, double margin,
-                   std::vector<Contact>& list) {
-    std::visit(
+double find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
+                     const Shape& shape_b, const Pose& pose_b, double margin,
+                     std::vector<Contact>& list) {
+    return std::visit(
         [&]<class A, class B>(const A& first, const B& second) {
+            PairContacts out{a, b, !HasContacts<A, B>, list};
             if constexpr (HasContacts<A, B>) {
-                PairContacts out{a, b, false, list};
                 contacts_between(first, pose_a, second, pose_b, margin, out);
             } else if constexpr (HasContacts<B, A>) {
-                PairContacts out{a, b, true, list};
                 contacts_between(second, pose_b, first, pose_a, margin, out);
             } else {
                 // Bodies without bounds never move: no pair function, and none is asked for.
                 static_assert(!A::kBounded && !B::kBounded, "a pair without contacts_between()");
                 TSR_ASSERT(is_bounded(shape_a) || is_bounded(shape_b));
             }
+            return out.apart;
         },
         shape_a, shape_b);
 }

@@ -11,9 +11,10 @@ namespace tesserae {
 ///
 /// Appends the contact points of bodies a < b whose separation is at most `margin` [m], ascending
 /// by feature. At least one shape must be bounded.
-void find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
-                   const Shape& shape_b, const Pose& pose_b, double margin,
-                   std::vector<Contact>& list);
+/// @return PairContacts::apart
+double find_contacts(BodyId a, const Shape& shape_a, const Pose& pose_a, BodyId b,
+                     const Shape& shape_b, const Pose& pose_b, double margin,
+                     std::vector<Contact>& list);
 
 /// As above, of bodies of which one has a face that the other lies over: its points, along the
 /// face's normal, whichever features are closest. None for shapes that have one point: if it lies

@@ -94,15 +94,16 @@ void contacts_between(const Hyperbox& a, const Pose& pose_a, const Hyperbox& b, 
                       double margin, PairContacts& out) {
     const double distance = stable_norm(pose_b.position - pose_a.position);
     const double reach = bounding_radius(a) + bounding_radius(b);
-    if (!(distance <= reach + margin)) return;
+    const auto say_apart = [&](double by) { out.apart = by; };
+    if (!(distance <= reach + margin)) return say_apart(distance - reach);
 
     const Mat4 axes_a = to_matrix(pose_a.rotor), axes_b = to_matrix(pose_b.rotor);
     const BoxPair pair = box_pair(a, pose_a.position, axes_a, b, pose_b.position, axes_b);
     const double scaled_margin = margin / pair.unit;
     SeparatingAxes axes;
-    if (!find_separating_axes(pair, scaled_margin, axes)) return;
+    if (!find_separating_axes(pair, scaled_margin, axes)) return say_apart(pair.unit * axes.gap());
     const BoxSeparation separation = separation_of(pair, axes);
-    if (separation.value > scaled_margin) return;
+    if (separation.value > scaled_margin) return say_apart(pair.unit * separation.value);
 
     BoxPoints points;
     find_points(pair, axes, separation, scaled_margin, points);

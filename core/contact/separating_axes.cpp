@@ -44,7 +44,10 @@ bool find_edge_axis(bool face_of_b, const Vec4& half_face, const Vec4& half_edge
         largest = largest.max(gaps[k]);
     }
     const double gap = largest.maxCoeff();
-    if (gap > margin) return false;
+    if (gap > margin) {
+        best.gap = gap;
+        return false;
+    }
     if (!(gap > best.gap)) return true;
     // Ties go to the first plane, then to the first edge.
     for (int k = 0; k < 6; ++k)
@@ -74,6 +77,7 @@ Vec4 edge_normal(const BoxPair& pair, const EdgeAxis& axis) {
 }  // namespace
 
 bool find_separating_axes(const BoxPair& pair, double margin, SeparatingAxes& axes) {
+    axes = {};
     const Mat4& r = pair.rotation;
     const Mat4 transposed = r.transpose();
     const Mat4 size = r.cwiseAbs();

@@ -37,7 +37,8 @@ struct SeparatingAxes {
 /// All 56 axes: the facets of a zonotope of eight generators are spanned by three of them each, so
 /// the Minkowski difference of the boxes has the 4 + 4 cell normals and 24 + 24 generalised cross
 /// products of two edges of one box and one edge of the other (Torres tests 32 and misses some).
-/// @return false as soon as a gap exceeds `margin` (in units); `axes` is then incomplete
+/// @return false as soon as a gap exceeds `margin` (in units, >= 0); of `axes` only gap() is then
+///         right, of those that were tried
 /// Accuracy of a gap: kGapError units (tested).
 bool find_separating_axes(const BoxPair& pair, double margin, SeparatingAxes& axes);
 

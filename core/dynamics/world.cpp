@@ -107,13 +107,14 @@ void World::find_contacts(Schedule& schedule) {
     const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
     for (bool look = true; look;) {
         if (keeps) begin_kept(step_, kPairGrain, last, spare_manifolds_);
+        if (keeps) clearances_.begin(simulation_, step_, schedule);
         step_.contacts.restart();
         contacts_.for_each_wave(
             for_each_range, step_.pairs.size(), kPairGrain,
             [&](Range pairs, std::vector<Contact>& list) {
                 if (keeps)
                     find_kept_contacts(simulation_, step_, pairs, last, kept_of(pairs),
-                                       spare_manifolds_, list);
+                                       spare_manifolds_, clearances_, list);
                 else
                     tesserae::find_contacts(simulation_, step_, pairs, list);
             },
@@ -124,10 +125,12 @@ void World::find_contacts(Schedule& schedule) {
                wake_touched(simulation_, step_);
         if (look) schedule.choose_pairs(simulation_, step_);
     }
+    if (keeps) clearances_.end(step_, schedule);
     if (simulation_.needs.seams) seams_.correct(simulation_, step_, schedule);
     begin_contacts(simulation_, step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain,
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
+    first_loads_.guess(simulation_, step_, schedule);
 }
 
 void World::build_islands() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/dynamics/stages/chunked_list.hpp"
+#include "core/dynamics/stages/first_loads.hpp"
 #include "core/dynamics/stages/impacts.hpp"
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/stages/kept_contacts.hpp"
@@ -61,8 +62,10 @@ class World {
     StepData step_;
     IslandBuilder island_builder_;
     SpareManifolds spare_manifolds_;
+    Clearances clearances_;
     ChunkedList<Contact> contacts_;
     Seams seams_;
+    FirstLoads first_loads_;
     Impacts impacts_;
     std::vector<std::uint8_t> has_fast_;      ///< of every range of kBodyGrain bodies
     std::vector<std::size_t> first_pushing_;  ///< of every range of contacts, and an end

@@ -2,6 +2,9 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <cstdlib>
@@ -76,6 +79,12 @@ std::uint64_t slurm_available() {
 std::uint64_t available_memory() {
     return std::min(
         {machine_available(), groups_available(), address_space_left(), slurm_available()});
+}
+
+void return_large_memory() {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 128 * 1024);  // as it is at first: once set it does not grow
+#endif
 }
 
 }  // namespace tesserae::scenes

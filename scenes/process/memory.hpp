@@ -9,4 +9,10 @@ namespace tesserae::scenes {
 /// leave.
 std::uint64_t available_memory();
 
+/// From now on every piece of more than 128 KiB of memory goes back to the system once it is freed.
+/// A step's lists move to new places as they grow; with glibc what they leave stays in the heap
+/// otherwise, in pieces that fit nothing. For programs, at their start; does nothing with other C
+/// libraries.
+void return_large_memory();
+
 }  // namespace tesserae::scenes

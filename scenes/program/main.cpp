@@ -1,3 +1,7 @@
+#include "scenes/process/memory.hpp"
 #include "scenes/program/commands.hpp"
 
-int main(int argc, char** argv) { return tesserae::scenes::program(argc, argv); }
+int main(int argc, char** argv) {
+    tesserae::scenes::return_large_memory();
+    return tesserae::scenes::program(argc, argv);
+}

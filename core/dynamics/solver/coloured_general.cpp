@@ -64,34 +64,34 @@ struct PairMotion {
 /// Not inlined: the points' velocities then have the registers to themselves.
 /// @return the largest velocity that was left to solve, if it is measured
 template <std::size_t kPoints, class F>
-[[gnu::noinline]] F solve_normals_of(const PairSweep<F>& pair, const Lane<F>& lane, bool soft,
+[[gnu::noinline]] F solve_normals_of(const PairSweep<F>& pair, const Lane<F>& lane,
                                      PairMotion<F>& of) {
     const auto& [pass, backward, measured, adjoint] = pair.sweep;
     PairNormals<kPoints, F> normals(lane, pair.coloured, pair.batch, of.motion.along);
     F left;
     if (backward) {
-        left = normals.template solve<true, true>(pass, soft, measured);
-        normals.template solve<false, false>(pass, soft, false);
+        left = normals.template solve<true, true>(pass, measured);
+        normals.template solve<false, false>(pass, false);
     } else {
-        left = normals.template solve<false, true>(pass, soft, measured);
-        normals.template solve<true, false>(pass, soft, false);
+        left = normals.template solve<false, true>(pass, measured);
+        normals.template solve<true, false>(pass, false);
     }
     normals.add_impulse(of.impulse.along);
     return left;
 }
 template <class F>
 [[gnu::always_inline]] inline void solve_normals(const Lane<F>& lane, const PairSweep<F>& pair,
-                                                 bool soft, PairMotion<F>& of, F& left) {
+                                                 PairMotion<F>& of, F& left) {
     const auto solve = [&] {
         switch (padded_points(pair.batch.rows)) {
             case 1:
-                return solve_normals_of<1>(pair, lane, soft, of);
+                return solve_normals_of<1>(pair, lane, of);
             case 2:
-                return solve_normals_of<2>(pair, lane, soft, of);
+                return solve_normals_of<2>(pair, lane, of);
             case 4:
-                return solve_normals_of<4>(pair, lane, soft, of);
+                return solve_normals_of<4>(pair, lane, of);
             default:
-                return solve_normals_of<8>(pair, lane, soft, of);
+                return solve_normals_of<8>(pair, lane, of);
         }
     };
     left = larger(left, solve());
@@ -170,9 +170,8 @@ template <class F>
 /// Normal impulses, friction, rolling, twisting, each after what those before it have done.
 template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline void solve_parts(const Lane<F>& lane, const PairSweep<F>& pair,
-                                               std::uint32_t index, bool soft, PairMotion<F>& of,
-                                               F& left) {
-    solve_normals(lane, pair, soft, of, left);
+                                               std::uint32_t index, PairMotion<F>& of, F& left) {
+    solve_normals(lane, pair, of, left);
     if constexpr (kFriction) {
         const PairFriction& friction = pair.coloured.pair_friction[index];
         of.see_along(lane, friction);
@@ -191,14 +190,14 @@ template <bool kFriction, bool kRolling, class F>
 template <bool kFriction, class F>
 [[gnu::always_inline]] inline void solve_parts_adjoint(const Lane<F>& lane,
                                                        const PairSweep<F>& pair,
-                                                       std::uint32_t index, bool soft,
-                                                       PairMotion<F>& of, F& left) {
+                                                       std::uint32_t index, PairMotion<F>& of,
+                                                       F& left) {
     if constexpr (kFriction) {
         const PairFriction& friction = pair.coloured.pair_friction[index];
         solve_friction(lane, pair, friction, of, left);
         of.see_across(lane, friction);
     }
-    solve_normals(lane, pair, soft, of, left);
+    solve_normals(lane, pair, of, left);
 }
 
 template <bool kFriction, bool kRolling, bool kUneven, class F>
@@ -214,12 +213,11 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     add(load_all(lane, pair_frame.motion), of.motion.along);
     if constexpr (kFriction)
         add(load_all(lane, coloured.pair_friction[index].motion), of.motion.across);
-    const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     F left{};
     if (sweep.adjoint)
-        solve_parts_adjoint<kFriction>(lane, pair, index, soft, of, left);
+        solve_parts_adjoint<kFriction>(lane, pair, index, of, left);
     else
-        solve_parts<kFriction, kRolling>(lane, pair, index, soft, of, left);
+        solve_parts<kFriction, kRolling>(lane, pair, index, of, left);
     bodies.apply(frame.to_world(of.impulse));
     return left;
 }

@@ -50,8 +50,13 @@ class ColouredIsland {
                    bool friction = true)
         : all_(step.coloured),
           place_(step.islands.coloured[island]),
-          stage_{simulation, step,     all_.mass_unit[place_],
-                 cause,      friction, step.has_rows[island] != 0} {}
+          stage_{simulation,
+                 step,
+                 all_.mass_unit[place_],
+                 cause,
+                 step.pushed[island] != 0,
+                 friction,
+                 step.has_rows[island] != 0} {}
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }

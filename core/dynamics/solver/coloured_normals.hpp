@@ -22,7 +22,8 @@ class PairNormals {
                                        const Batch& batch, const std::array<F, 4>& motion)
         : lane_(lane),
           rows_(&coloured.rows[batch.row]),
-          relax_(&coloured.relax[batch.row]),
+          relax_targets_(&coloured.relax.target[batch.row]),
+          keep_(keep_from(coloured.relax, batch.row)),
           impulses_(&coloured.impulses.normal[batch.row]),
           response_(first_of<kResponses>(lane, &coloured.point_response[batch.response])),
           count_(batch.rows),
@@ -34,8 +35,8 @@ class PairNormals {
     /// @tparam kFirst   else what a point does to those before it is of no use any more
     /// @return the largest velocity that was left to solve, if `measured`
     template <bool kBackward, bool kFirst>
-    [[gnu::always_inline]] F solve(Pass pass, bool soft, bool measured) {
-        return solve<kBackward, kFirst>(pass, soft, measured, All());
+    [[gnu::always_inline]] F solve(Pass pass, bool measured) {
+        return solve<kBackward, kFirst>(pass, measured, All());
     }
 
     /// What the impulses have changed by, seen from the centre.
@@ -49,18 +50,19 @@ class PairNormals {
         ((velocity_[k] = k < count_ ? along_at(place_of(lane_, rows_[k]), motion) : F{}), ...);
     }
     template <bool kBackward, bool kFirst, std::size_t... i>
-    [[gnu::always_inline]] F solve(Pass pass, bool soft, bool measured, std::index_sequence<i...>) {
+    [[gnu::always_inline]] F solve(Pass pass, bool measured, std::index_sequence<i...>) {
         F left{};
         (solve_point < kBackward ? kPoints - 1 - i : i, kBackward,
-         kFirst > (pass, soft, measured, left, All()), ...);
+         kFirst > (pass, measured, left, All()), ...);
         return left;
     }
     template <std::size_t k, bool kBackward, bool kFirst, std::size_t... j>
-    [[gnu::always_inline]] void solve_point(Pass pass, bool soft, bool measured, F& left,
+    [[gnu::always_inline]] void solve_point(Pass pass, bool measured, F& left,
                                             std::index_sequence<j...>) {
         if (k >= count_) return;
         const F change =
-            solve_normal(lane_, rows_[k].along, relax_[k], velocity_[k], soft, pass, impulses_[k]);
+            solve_normal(lane_, rows_[k].along, relax_targets_[k], keep_ ? keep_ + k : nullptr,
+                         velocity_[k], pass, impulses_[k]);
         change_[k] += change;
         ((kFirst || (kBackward ? j < k : j > k)
               ? void(velocity_[j] = fused(change, response(k, j), velocity_[j]))
@@ -85,7 +87,7 @@ class PairNormals {
 
     const Lane<F>& lane_;
     const GeneralRow* const rows_;
-    const NormalRelax* const relax_;
+    const Eight *const relax_targets_, *const keep_;
     Eight* const impulses_;
     const std::array<F, kResponses> response_;
     const std::uint32_t count_;

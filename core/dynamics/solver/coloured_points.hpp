@@ -56,7 +56,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
     const ContactTargets targets =
-        PairTargets(simulation, step, c, stage.cause).at(c.separation, along);
+        PairTargets(simulation, step, c, stage.cause, stage.pushed).at(c.separation, along);
     put(c.normal, points.normal[lane]);
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
@@ -119,7 +119,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const StepData& step = stage.step;
     const Contact contact = step.contacts[first];
     const BodyId a = contact.a, b = contact.b;
-    const PairTargets targets_of(simulation, step, contact, stage.cause);
+    const PairTargets targets_of(simulation, step, contact, stage.cause, stage.pushed);
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     const Vec4 centre = centre_of(step, first, count);
     const Vec4 r_a = centre - step.position[a], r_b = centre - step.position[b];
@@ -166,28 +166,35 @@ template <class F>
     lane.store(response > least ? (keep > F{} ? inverse : F{}) : F{}, row.mass);
 }
 /// @param fours   target, relax target, keep, normal impulse
+/// @param place   in `relax` and `impulses`
 /// @return the impulse to start from
 template <class F>
 [[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
-                                             NormalRow& row, NormalRelax& relax, Eight& impulse) {
+                                             std::size_t place, NormalRow& row, NormalRelax& relax,
+                                             std::vector<Eight>& impulses) {
     lane.store(fours[0], row.target);
-    lane.store(fours[1], relax.target);
-    lane.store(fours[2], relax.keep);
-    lane.store(fours[3], impulse);
+    lane.store(fours[1], relax.target[place]);
+    if (!relax.keep.empty()) lane.store(fours[2], relax.keep[place]);
+    lane.store(fours[3], impulses[place]);
     return fours[3];
+}
+/// NormalPass::keep of a row and those behind it; null where contacts are rigid.
+inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
+    return relax.keep.empty() ? nullptr : &relax.keep[place];
 }
 
 /// One step of a normal impulse at the change v of the normal velocity.
+/// @param keep   as of keep_from()
 /// @return its change
 template <class F>
 [[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, const NormalRow& row,
-                                             const NormalRelax& relax, F v, bool soft, Pass pass,
-                                             Eight& impulse) {
+                                             const Eight& relax_target, const Eight* keep, F v,
+                                             Pass pass, Eight& impulse) {
     const bool relaxes = pass == Pass::kRelax;
     const F old = lane.load(impulse);
-    const F target = lane.load(relaxes ? relax.target : row.target);
+    const F target = lane.load(relaxes ? relax_target : row.target);
     F change = lane.load(row.mass) * (target - v);
-    if (soft && !relaxes) change = lane.load(relax.keep) * (old + change) - old;
+    if (keep && !relaxes) change = lane.load(*keep) * (old + change) - old;
     change = larger(change, -old);  // sooner there than by the impulse
     lane.store(old + change, impulse);
     return change;

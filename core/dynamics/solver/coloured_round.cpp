@@ -73,8 +73,8 @@ template <bool kFriction, bool kRolling, class F>
     store(lane, n, row.normal);
     const LaneVec4<F> along = load(lane, points.along);
     make_normal(lane, along[2], response, F{}, row.along);
-    const F normal_impulse = start_normal(lane, along, row.along, coloured.round_relax[batch],
-                                          coloured.round_impulses.normal[batch]);
+    const F normal_impulse = start_normal(lane, along, batch, row.along, coloured.round_relax,
+                                          coloured.round_impulses.normal);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -127,10 +127,10 @@ template <bool kFriction, bool kRolling, class F>
 
     const LaneVec4<F> v = b.velocity - a.velocity;
     const F along = dot(n, v);
-    const bool soft = stage.simulation.settings.solver == Solver::kSoft;
     Eight& impulse = coloured.round_impulses.normal[batch];
-    const F change = solve_normal(lane, row.along, coloured.round_relax[batch], along, soft,
-                                  sweep.pass, impulse);
+    const F change =
+        solve_normal(lane, row.along, coloured.round_relax.target[batch],
+                     keep_from(coloured.round_relax, batch), along, sweep.pass, impulse);
     const F normal_impulse = lane.load(impulse);
     LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {
@@ -223,8 +223,8 @@ void take_recalled_round(const ColouredStage& stage, BatchRange batches) {
         const Float8 along = dot(n, v);
         NormalRow& row = coloured.round_rows[i].along;
         lane.store(lane.load(row.target) - along, row.target);
-        NormalRelax& relax = coloured.round_relax[i];
-        lane.store(lane.load(relax.target) - along, relax.target);
+        Eight& relax_target = coloured.round_relax.target[i];
+        lane.store(lane.load(relax_target) - along, relax_target);
         if (!coloured.friction) continue;
         RoundFriction& friction = coloured.round_friction[i];
         const LaneVec4<Float8> slip = slip_of(lane, n, v, along, friction, a, b);

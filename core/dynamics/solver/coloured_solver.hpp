@@ -119,7 +119,8 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     if (blow.fastest == 0) return;
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
-    const Effort effort = effort_of_large_blow(simulation, blow.fastest);
+    const Range places = step.islands.places(island);
+    const Effort effort = effort_of_large_blow(simulation, places.end - places.begin, blow.fastest);
     const Range range = coloured.bodies();
     compress_coloured(coloured, effort, threads, lanes);
     step.has_rows[island] = 1;

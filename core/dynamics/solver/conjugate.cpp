@@ -42,6 +42,10 @@ constexpr auto begin = [](const Eight& impulse, Eight& last, Eight& direction) {
     last = impulse;
     direction = {};
 };
+/// As if all of the impulses had come since, without a direction.
+constexpr auto begin_at_none = [](const Eight&, Eight& last, Eight& direction) {
+    last = direction = {};
+};
 /// Impulses go from where they were along the new direction.
 auto go(float carried, float length) {
     return [carried, length](Eight& impulse, Eight& last, Eight& direction) {
@@ -179,8 +183,9 @@ bool has_conjugates(const Simulation& simulation) {
                });
 }
 
-void take_recalled(const ColouredStage& stage, Range bodies) {
+void weigh_recalled(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
+    const double kick_squared = (stage.step.h * stage.simulation.settings.gravity).squaredNorm();
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = coloured.bodies[i];
         const TypeProperties& type = stage.simulation.type_of(id);
@@ -189,8 +194,31 @@ void take_recalled(const ColouredStage& stage, Range bodies) {
                 type.isotropic ? BodyInertia{}
                                : columns(world_map(type.inertia, type, stage.step.rotor[id]),
                                          1 / stage.mass_unit);
-        BodyChange& change = coloured.changes[i];
-        coloured.body_sums[i] = {energy_of(coloured, i, change_of(change)), 0, 0};
+        const double falls = type.falls ? 0.5 * type.mass / stage.mass_unit * kick_squared : 0;
+        coloured.body_sums[i] = {energy_of(coloured, i, change_of(coloured.changes[i])), falls, 0};
+    }
+}
+
+void begin_recalled_round(const ColouredStage& stage, BatchRange batches) {
+    visit_round(stage.step.coloured, batches, begin_at_none);
+}
+
+void begin_recalled_general(const ColouredStage& stage, BatchRange batches) {
+    visit_general(stage.step.coloured, batches, begin_at_none);
+}
+
+void leave_part(const ColouredStage& stage, Range bodies, float part) {
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        BodyChange& change = stage.step.coloured.changes[i];
+        const std::array<float, 4> rest = change.rest;
+        store(part * load(change), change);
+        change.rest[2] = rest[2], change.rest[3] = rest[3];  // the masses
+    }
+}
+
+void take_recalled(const ColouredStage& stage, Range bodies) {
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        BodyChange& change = stage.step.coloured.changes[i];
         change.velocity = change.first_planes = {};
         change.rest[0] = change.rest[1] = 0;
     }

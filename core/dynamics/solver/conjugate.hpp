@@ -28,10 +28,18 @@ namespace tesserae {
 /// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
-/// What the impulses that the load starts from have changed is no change any more: what is left is
-/// small, and so is its rounding, of which directions would grow. The rows' starts have it first,
-/// by take_recalled_round() and take_recalled_general(), and the velocities, by add_changes(). Its
-/// energy goes into body_sums.
+/// The energies of what the impulses that the load starts from have changed, and of what gravity
+/// has, into body_sums.
+void weigh_recalled(const ColouredStage& stage, Range bodies);
+/// Before the rows' work on that is weighed, as that of a step from no impulses; then the part of
+/// it that is left is gone along, by go_along_round() and go_along_general().
+void begin_recalled_round(const ColouredStage& stage, BatchRange batches);
+void begin_recalled_general(const ColouredStage& stage, BatchRange batches);
+void leave_part(const ColouredStage& stage, Range bodies, float part);
+
+/// What is recalled is no change any more: what is left is small, and so is its rounding, of which
+/// directions would grow. The rows' starts have it first, by take_recalled_round() and
+/// take_recalled_general(), and the velocities, by add_changes().
 void take_recalled(const ColouredStage& stage, Range bodies);
 
 /// What the next pair of sweeps goes on from, without a direction: where the last one ended.

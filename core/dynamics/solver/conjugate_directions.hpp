@@ -17,13 +17,19 @@ class ConjugateDirections {
     ConjugateDirections(const ColouredIsland& island, const Threads& threads)
         : island_(island), threads_(threads) {
         const ColouredStage& stage = island.stage();
+        for_bodies([](auto... of) { weigh_recalled(of...); });
+        double recalled = 0, weight = 0;  // energies
+        for (std::size_t i = island.bodies().begin; i < island.bodies().end; ++i) {
+            recalled += stage.step.coloured.body_sums[i][0];
+            weight += stage.step.coloured.body_sums[i][1];
+        }
+        if (recalled > kRecalledWeight * weight) recalled *= leave_part_of(recalled);
+        rounding_ = kFloatStep * kFloatStep * recalled;
         for_all_rows(
             island, threads, [&](BatchRange some) { take_recalled_round(stage, some); },
             [&](BatchRange some) { take_recalled_general(stage, some); });
         for_bodies([](auto... of) { add_changes(of...); });
         for_bodies([](auto... of) { take_recalled(of...); });
-        for (std::size_t i = island.bodies().begin; i < island.bodies().end; ++i)
-            rounding_ += kFloatStep * kFloatStep * stage.step.coloured.body_sums[i][0];
         for_bodies([](auto... of) { begin_directions(of...); });
     }
     /// The direction after a pair of sweeps.
@@ -92,6 +98,29 @@ class ConjugateDirections {
     /// rounding, of which directions would grow.
     static constexpr double kFloatStep = 1e-6;
 
+    /// Loads that are more than weights may be none: what ended a blow, and would be replayed. The
+    /// part of them that is left is the one that takes the most energy.
+    /// @return its square
+    double leave_part_of(double recalled) {
+        const ColouredStage& stage = island_.stage();
+        for_all_rows(
+            island_, threads_,
+            [&](BatchRange some) {
+                begin_recalled_round(stage, some);
+                weigh_round_step(stage, some);
+            },
+            [&](BatchRange some) {
+                begin_recalled_general(stage, some);
+                weigh_general_step(stage, some);
+            });
+        const double part = std::clamp(work()[0] / (2 * recalled), 0.0, 1.0);
+        const auto left = static_cast<float>(part);
+        for_bodies([left](auto... of) { leave_part(of..., left); });
+        for_all_rows(
+            island_, threads_, [&](BatchRange some) { go_along_round(stage, some, 0, left); },
+            [&](BatchRange some) { go_along_general(stage, some, 0, left); });
+        return part * part;
+    }
     /// After a step along a direction that led away from the solution there are none for a while.
     /// @param ratio   of r.z to that before the step
     void look_for_rise(double ratio, double energy) {

@@ -146,7 +146,7 @@ void start_rows(const Simulation& simulation, StepData& step, std::size_t island
         if (!made) *row = make_row(simulation, step, contact);
         const ContactImpulse start =
             cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, *row);
+        start_row(simulation, step, contact, start, cause, step.pushed[island] != 0, *row);
         if (simulation.needs.rolling) {
             RollingRow& rolling = rolling_row_of(step, *row);
             if (!made) rolling = make_rolling_row(simulation, step, *row);

@@ -36,9 +36,12 @@ inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts,
     const auto sweeps = static_cast<int>(kBlowWork / contacts);
     return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest, 4};
 }
-/// Half of the iterations: the load takes what is left.
-inline Effort effort_of_large_blow(const Simulation& simulation, double fastest) {
-    return {(simulation.settings.iterations + 1) / 2, kLargeBlowResidual * fastest, 4};
+/// Half of the iterations where there are many contacts: the load takes what is left.
+inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t contacts,
+                                   double fastest) {
+    const auto sweeps = static_cast<int>(kBlowWork / contacts);
+    return {std::max((simulation.settings.iterations + 1) / 2, sweeps),
+            kLargeBlowResidual * fastest, 4};
 }
 
 /// One iteration of a pass. Every other one goes through the island backward: a load at one end of

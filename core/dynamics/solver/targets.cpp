@@ -64,14 +64,15 @@ ContactTargets targets_of_blow(const Approach& approach, double s, double h, dou
 }  // namespace
 
 PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
-                         Cause cause)
+                         Cause cause, bool pushed)
     : cause_(cause),
       soft_(simulation.settings.solver == Solver::kSoft),
       bounces_(cause == Cause::kBlow || simulation.needs.restitution),
       h_(step.h),
       slop_(slop_of(simulation, contact.a, contact.b)),
       // Acts on the second half of the sub-step only, so that it has to be twice as large.
-      fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()) {
+      fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()),
+      bias_(pushed ? std::min(fastest_, kBiasPart / h_ * kPushedBias * slop_) : fastest_) {
     if (bounces_) approach_ = approach_of(simulation, step, contact);
 }
 
@@ -96,7 +97,7 @@ ContactTargets PairTargets::of_overlap(double s) const {
     }
     const double depth = -(s + slop_);
     if (!soft_) {
-        targets.solve = std::min(fastest_, kBiasPart / h_ * depth);
+        targets.solve = std::min(bias_, kBiasPart / h_ * depth);
         targets.relax = std::min(fastest_, 2 * kBiasPart / h_ * depth);
         return targets;
     }

@@ -33,8 +33,9 @@ struct Approach {
 class PairTargets {
   public:
     /// @param contact   any of them
+    /// @param pushed    of their island, see is_pushed()
     PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
-                Cause cause);
+                Cause cause, bool pushed);
     /// @param velocity   along the normal, at which the bodies part before the first impulse of the
     ///                   cause [m/s]
     ContactTargets at(double separation, double velocity) const;
@@ -49,6 +50,7 @@ class PairTargets {
     double h_;             ///< [s]
     double slop_;          ///< overlap that is left alone [m]
     double fastest_;       ///< at which bodies are moved apart, at most [m/s]
+    double bias_;          ///< the same of a load of Solver::kImpulse
     Approach approach_;
 };
 

@@ -46,6 +46,11 @@ void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents>& impu
     resize_anew(impulses.tangent, friction ? rows : 0);
 }
 
+void size_relax(const Simulation& simulation, std::size_t rows, NormalRelax& relax) {
+    resize_anew(relax.target, rows);
+    if (simulation.settings.solver == Solver::kSoft) resize_anew(relax.keep, rows);
+}
+
 void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
@@ -137,10 +142,10 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     size_impulses(coloured.round.size(), coloured.friction, coloured.round_impulses);
     size_impulses(coloured.general_rows, coloured.friction, coloured.impulses);
     resize_anew(coloured.round_rows, coloured.round.size());
-    resize_anew(coloured.round_relax, coloured.round.size());
+    size_relax(simulation, coloured.round.size(), coloured.round_relax);
     resize_anew(coloured.frames, coloured.general.size());
     resize_anew(coloured.rows, coloured.general_rows);
-    resize_anew(coloured.relax, coloured.general_rows);
+    size_relax(simulation, coloured.general_rows, coloured.relax);
     resize_anew(coloured.point_response, coloured.point_responses);
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());

@@ -17,12 +17,12 @@ double margin_of(const Simulation& simulation, const StepData& step, BodyId a, B
     return std::min(type_a.slop, type_b.slop) + step.h * speed;
 }
 
-void find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
-                      double margin, std::vector<Contact>& list) {
+double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
+                        double margin, std::vector<Contact>& list) {
     const auto [a, b] = pair;
     const Bodies& bodies = simulation.bodies;
-    find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
-                  bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    return find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                         bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
 }
 
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,

@@ -10,8 +10,9 @@ double margin_of(const Simulation& simulation, const StepData& step, BodyId a, B
 /// Narrow phase of a pair where its bodies are: appends its contacts to a list. With the margin of
 /// margin_of() these are points that can close within one sub-step at the present relative
 /// velocity, and those that are within the allowed overlap of touching.
-void find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
-                      double margin, std::vector<Contact>& list);
+/// @return as find_contacts() of two shapes
+double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
+                        double margin, std::vector<Contact>& list);
 /// That of step.pairs in the range.
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                    std::vector<Contact>& list);

@@ -10,13 +10,21 @@
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/stages/contacts.hpp"
 #include "core/dynamics/stages/seam_judge.hpp"
+#include "core/error.hpp"
 
 namespace tesserae {
 namespace {
 
 using Keeps = KeptManifold::Keeps;
 
-/// Spare records of a kind are at most so many, or one part in so many of those that are kept.
+/// Distances are good to less than this part of both bodies' radii (hyperbox_hyperbox.hpp,
+/// convex_separation.hpp): what is farther apart by so much is so for every search.
+constexpr double kDistanceSlack = 1e-8;
+
+/// Points of bodies of such a size [m] are kept in float.
+bool fits_floats(double radius) { return radius > 1e-30 && radius < 1e30; }
+
+/// Spare records are at most so many, or one part in so many of those that are kept.
 constexpr std::size_t kFewSpares = 64, kSpareManifolds = 16;
 
 BodyPair pair_of(const KeptManifold& m) { return {m.a, m.b}; }
@@ -87,34 +95,39 @@ class KeptContacts {
                  SpareManifolds& spare, std::vector<Contact>& list)
         : simulation_(simulation), step_(step), kept_(kept), spare_(spare), list_(list) {}
 
-    /// Whether both are flat and whatever comes within the margin is within that of what is kept.
-    bool may_keep(const BodyPair& pair, double margin) const {
-        const TypeProperties& a = simulation_.type_of(pair.a);
-        const TypeProperties& b = simulation_.type_of(pair.b);
-        return a.flat && b.flat &&
-               margin <= (kKeptMargin - kKeptMotion / kSlop) * std::min(a.slop, b.slop);
+    /// How far a search for the pair's contacts looks [m], at most.
+    double looks_to(const BodyPair& pair, double margin) const {
+        return std::max(margin, kKeptMargin * slop_of(pair));
     }
 
     /// @param last   what the sub-step before this one kept of the pair, or null
-    void find(const BodyPair& pair, double margin,
-              const std::shared_ptr<const KeptManifold>* last) {
+    /// @return how far apart both are at least [m], as far as it is known
+    double find(const BodyPair& pair, double margin,
+                const std::shared_ptr<const KeptManifold>* last) {
+        const TypeProperties& type_a = simulation_.type_of(pair.a);
+        const TypeProperties& type_b = simulation_.type_of(pair.b);
+        const double slack = kDistanceSlack * (type_a.radius + type_b.radius);
+        if (!may_keep(pair, margin))
+            return find_contacts_of(simulation_, step_, pair, margin, list_) - slack;
         const auto [a, b] = pair;
         if (a != turned_) from_turned_ = to_matrix(step_.rotor[a]), turned_ = a;
         const Mat4& from_a = from_turned_;
         const Relative now = {from_a.transpose() * (step_.position[b] - step_.position[a]),
                               reverse(step_.rotor[a]) * step_.rotor[b]};
-        const TypeProperties &type_a = simulation_.type_of(a), &type_b = simulation_.type_of(b);
-        const double slop = std::min(type_a.slop, type_b.slop);
-        if (!last || !(way(**last, now, type_b.radius) <= kKeptMotion / kSlop * slop))
-            keep(found_at(pair, now, kKeptMargin * slop));
-        else if ((*last)->keeps == Keeps::kUnknown)
-            keep(found_at(pair, {(*last)->offset, (*last)->rotor}, kKeptMargin * slop));
-        else
-            keep(*last);
+        const double slop = slop_of(pair), most = kKeptMargin * slop;
+        const bool stays = last && way(**last, now, type_b.radius) <= kKeptMotion / kSlop * slop;
+        const bool is_known = stays && (*last)->keeps != Keeps::kUnknown;
+        double apart = 0;
+        if (is_known) keep(*last);
+        const bool is_kept =
+            is_known || (stays && keep_found(pair, {(*last)->offset, (*last)->rotor}, most, apart));
+        if (!is_kept && !keep_found(pair, now, most, apart)) return apart - slack;
         const KeptManifold& m = *kept_[count_ - 1];
         if (m.keeps == Keeps::kNoFace)
-            return find_contacts_of(simulation_, step_, pair, margin, list_);
-        if (!m.points.empty()) report(m, from_a, now, margin);
+            find_contacts_of(simulation_, step_, pair, margin, list_);
+        else
+            report(m, from_a, now, margin);
+        return 0;
     }
 
     /// Takes what the list still had away behind the last one that is kept.
@@ -137,62 +150,82 @@ class KeptContacts {
         ++count_;
     }
 
-    std::shared_ptr<const KeptManifold> found_at(const BodyPair& pair, const Relative& at,
-                                                 double margin) {
+    double slop_of(const BodyPair& pair) const {
+        return std::min(simulation_.type_of(pair.a).slop, simulation_.type_of(pair.b).slop);
+    }
+    /// Whether both are flat and whatever comes within the margin is within that of what is kept.
+    bool may_keep(const BodyPair& pair, double margin) const {
+        const TypeProperties& a = simulation_.type_of(pair.a);
+        const TypeProperties& b = simulation_.type_of(pair.b);
+        return a.flat && b.flat && fits_floats(std::min(a.radius, b.radius)) &&
+               margin <= (kKeptMargin - kKeptMotion / kSlop) * slop_of(pair);
+    }
+
+    /// Keeps the manifold of the pair at a place, if there is one.
+    /// @param apart   becomes what the search says
+    bool keep_found(const BodyPair& pair, const Relative& at, double margin, double& apart) {
         const Shape& shape_a = simulation_.bodies.type_of(pair.a).shape;
         const Shape& shape_b = simulation_.bodies.type_of(pair.b).shape;
         const Vec4 here = Vec4::Zero();
         // Behind those of other pairs for a while: a list's memory is its range's, and no step
         // should have to ask for more because another thread has come to a range.
         const std::size_t first = list_.size();
-        find_contacts(pair.a, shape_a, {here, Rotor{}}, pair.b, shape_b, {at.offset, at.rotor},
-                      margin, list_);
+        apart = find_contacts(pair.a, shape_a, {here, Rotor{}}, pair.b, shape_b,
+                              {at.offset, at.rotor}, margin, list_);
         const std::span<const Contact> found(list_.begin() + static_cast<std::ptrdiff_t>(first),
                                              list_.end());
-        Keeps keeps = Keeps::kNothing;
-        Vec4 normal = here;
-        if (!found.empty()) {
-            normal = found[0].normal;
-            const Vec4 into_b = -(to_matrix(at.rotor).transpose() * normal);
-            keeps = is_normal_of_face(shape_a, normal)   ? Keeps::kNormalOfA
-                    : is_normal_of_face(shape_b, into_b) ? Keeps::kNormalOfB
-                                                         : Keeps::kNoFace;
-        }
-        const bool has_points = keeps == Keeps::kNormalOfA || keeps == Keeps::kNormalOfB;
-        const std::shared_ptr<KeptManifold> manifold = record(has_points);
+        TSR_ASSERT(found.size() <= kManifoldPoints);
+        if (found.empty()) return false;
+        const Vec4 normal = found[0].normal;
+        const Vec4 into_b = -(to_matrix(at.rotor).transpose() * normal);
+        const std::shared_ptr<KeptManifold> manifold = record();
         KeptManifold& m = *manifold;
         m.a = pair.a, m.b = pair.b, m.offset = at.offset, m.rotor = at.rotor;
-        m.keeps = keeps, m.normal = normal;
-        m.points.clear(), m.no_seam = 0;
-        if (has_points) {
-            m.points.reserve(found.size());
+        m.keeps = is_normal_of_face(shape_a, normal)   ? Keeps::kNormalOfA
+                  : is_normal_of_face(shape_b, into_b) ? Keeps::kNormalOfB
+                                                       : Keeps::kNoFace;
+        m.normal = normal;
+        m.count = m.no_seam = 0;
+        if (m.keeps != Keeps::kNoFace) {
+            const Vec4 origin = origin_of(m);
             for (const Contact& c : found) {
+                KeptPoint& point = m.points[m.count++];
                 const Vec4 on_a = c.point - 0.5 * c.separation * normal;
-                m.points.push_back({{on_a[0], on_a[1], on_a[2], on_a[3]}, c.separation, c.feature});
+                Eigen::Map<Eigen::Vector4f>(point.on_a.data()) = (on_a - origin).cast<float>();
+                point.separation = static_cast<float>(c.separation);
+                point.feature = c.feature;
             }
             m.no_seam = no_seam_of(m);
         }
         list_.resize(first);
-        return manifold;
+        keep(manifold);
+        return true;
     }
 
     /// Two bodies that are found anew in every step have the record of the step before the last.
-    std::shared_ptr<KeptManifold> record(bool has_points) {
-        if (count_ < kept_.size() && kept_[count_].use_count() == 1 &&
-            has_points == (kept_[count_]->points.capacity() > 0))
+    std::shared_ptr<KeptManifold> record() {
+        if (count_ < kept_.size() && kept_[count_].use_count() == 1)
             return std::const_pointer_cast<KeptManifold>(std::move(kept_[count_]));
-        return spare_.take(has_points);
+        return spare_.take();
+    }
+
+    /// What the points are counted from, in a's frame: floats of the smaller body's size tell them.
+    Vec4 origin_of(const KeptManifold& m) const {
+        const bool is_b = simulation_.type_of(m.b).radius < simulation_.type_of(m.a).radius;
+        return is_b ? Vec4(m.offset) : Vec4(Vec4::Zero());
+    }
+    Vec4 on_a(const KeptPoint& point, const Vec4& origin) const {
+        return origin + Eigen::Map<const Eigen::Vector4f>(point.on_a.data()).cast<double>();
     }
 
     /// See Contact.
     std::uint8_t no_seam_of(const KeptManifold& m) const {
-        const std::size_t count = m.points.size();
-        if (count > kManifoldPoints) return 0;
+        const std::size_t count = m.count;
         const Mat4 to_b = to_matrix(m.rotor).transpose();
-        const Vec4 normal = m.normal, offset = m.offset;
+        const Vec4 normal = m.normal, offset = m.offset, origin = origin_of(m);
         std::array<Vec4, kManifoldPoints> in_a, in_b;
         for (std::size_t i = 0; i < count; ++i) {
-            in_a[i] = Vec4(m.points[i].on_a.data());
+            in_a[i] = on_a(m.points[i], origin);
             in_b[i] = to_b * (in_a[i] + m.points[i].separation * normal - offset);
         }
         const bool of_a = is_never_seam(simulation_.bodies.type_of(m.a).shape, normal,
@@ -205,18 +238,17 @@ class KeptContacts {
     void report(const KeptManifold& m, const Mat4& from_a, const Relative& now, double margin) {
         // Where b was, to where it is.
         const Mat4 turn = to_matrix(now.rotor * reverse(m.rotor));
-        const Vec4 found_normal = m.normal, found_offset = m.offset;
+        const Vec4 found_normal = m.normal, found_offset = m.offset, origin = origin_of(m);
         const Vec4 normal = m.keeps == Keeps::kNormalOfA ? found_normal : Vec4(turn * found_normal);
         const Vec4 in_world = from_a * normal;
-        for (const KeptPoint& p : m.points) {
-            const Vec4 on_a(p.on_a.data());
-            const Vec4 first = on_a + p.separation * found_normal;
-            const Vec4 on_b = now.offset + turn * (first - found_offset);
-            const double separation = normal.dot(on_b - on_a);
+        for (const KeptPoint& p : m.found()) {
+            const Vec4 of_a = on_a(p, origin);
+            const Vec4 first = of_a + double{p.separation} * found_normal;
+            const Vec4 of_b = now.offset + turn * (first - found_offset);
+            const double separation = normal.dot(of_b - of_a);
             if (separation <= margin)
-                list_.push_back({in_world, step_.position[m.a] + from_a * (0.5 * (on_a + on_b)),
-                                 separation, m.a, m.b, p.feature, m.no_seam,
-                                 static_cast<std::uint8_t>(m.points.size())});
+                list_.push_back({in_world, step_.position[m.a] + from_a * (0.5 * (of_a + of_b)),
+                                 separation, m.a, m.b, p.feature, m.no_seam, m.count});
         }
     }
 
@@ -235,30 +267,25 @@ class KeptContacts {
 
 void SpareManifolds::begin(std::size_t manifolds) {
     const std::size_t most = std::max(kFewSpares, manifolds / kSpareManifolds);
-    for (Spares& spares : spares_) {
-        auto& [list, put, taken, count] = spares;
-        list.resize(list.size() - std::min(list.size(), taken));
-        list.reserve(most);
-        for (std::size_t i = 0; i < std::min(count, put.size()) && list.size() < most; ++i)
-            list.push_back(std::move(put[i]));
-        put.clear();
-        put.resize(most);
-        taken = count = 0;
-    }
+    list_.resize(list_.size() - std::min(list_.size(), taken_));
+    list_.reserve(most);
+    for (std::size_t i = 0; i < std::min(count_, put_.size()) && list_.size() < most; ++i)
+        list_.push_back(std::move(put_[i]));
+    put_.clear();
+    put_.resize(most);
+    taken_ = count_ = 0;
 }
 
 void SpareManifolds::put(std::shared_ptr<const KeptManifold>& manifold) {
     if (manifold.use_count() != 1) return;
-    Spares& spares = spares_[manifold->points.capacity() > 0 ? 1 : 0];
-    const std::size_t place = std::atomic_ref(spares.count).fetch_add(1);
-    if (place < spares.put.size())
-        spares.put[place] = std::const_pointer_cast<KeptManifold>(std::move(manifold));
+    const std::size_t place = std::atomic_ref(count_).fetch_add(1);
+    if (place < put_.size())
+        put_[place] = std::const_pointer_cast<KeptManifold>(std::move(manifold));
 }
 
-std::shared_ptr<KeptManifold> SpareManifolds::take(bool has_points) {
-    Spares& spares = spares_[has_points ? 1 : 0];
-    const std::size_t place = std::atomic_ref(spares.taken).fetch_add(1);
-    if (place < spares.list.size()) return std::move(spares.list[spares.list.size() - 1 - place]);
+std::shared_ptr<KeptManifold> SpareManifolds::take() {
+    const std::size_t place = std::atomic_ref(taken_).fetch_add(1);
+    if (place < list_.size()) return std::move(list_[list_.size() - 1 - place]);
     return std::make_shared<KeptManifold>();
 }
 
@@ -275,23 +302,25 @@ void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifol
 
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                         const std::vector<KeptManifolds>& last, std::span<KeptManifolds> lists,
-                        SpareManifolds& spare, std::vector<Contact>& list) {
+                        SpareManifolds& spare, Clearances& clearances, std::vector<Contact>& list) {
     if (pairs.begin == pairs.end) return;
     for (KeptManifolds& unused : lists.subspan(1)) {
         for (auto& manifold : unused) spare.put(manifold);
         unused.clear();
     }
     KeptManifolds& kept = lists.front();
-    Search search(last, step.filled, step.pairs[pairs.begin]);
+    const BodyPair& first = step.pairs[pairs.begin];
+    Search kept_of(last, step.filled, first);
+    Clearances::Search clearance_of(clearances, first);
     KeptContacts contacts(simulation, step, kept, spare, list);
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const BodyPair& pair = step.pairs[i];
         const double margin = margin_of(simulation, step, pair.a, pair.b);
-        if (!contacts.may_keep(pair, margin)) {
-            find_contacts_of(simulation, step, pair, margin, list);
-            continue;
-        }
-        contacts.find(pair, margin, search.find(pair));
+        const auto* const kept_before = kept_of.find(pair);
+        double apart = kept_before ? 0 : clearance_of.left(pair);
+        if (!(apart > contacts.looks_to(pair, margin)))
+            apart = contacts.find(pair, margin, kept_before);
+        clearances.set(i, apart);
     }
     contacts.end();
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/stages/clearances.hpp"
 
 namespace tesserae {
 
@@ -34,15 +33,11 @@ class SpareManifolds {
     /// more, if nobody else has it.
     void put(std::shared_ptr<const KeptManifold>& manifold);
     /// One that is spare or new.
-    /// @param has_points   it should have memory for points
-    std::shared_ptr<KeptManifold> take(bool has_points);
+    std::shared_ptr<KeptManifold> take();
 
   private:
-    struct Spares {
-        std::vector<std::shared_ptr<KeptManifold>> list, put;
-        std::size_t taken = 0, count = 0;  ///< from the end of `list`; of `put`; since begin()
-    };
-    std::array<Spares, 2> spares_;  ///< without and with memory for points
+    std::vector<std::shared_ptr<KeptManifold>> list_, put_;
+    std::size_t taken_ = 0, count_ = 0;  ///< from the end of `list_`; of `put_`; since begin()
 };
 
 /// Before find_kept_contacts() is called for all ranges of step.pairs.
@@ -57,6 +52,6 @@ void begin_kept(StepData& step, std::size_t grain, const std::vector<KeptManifol
 ///                filled
 void find_kept_contacts(const Simulation& simulation, const StepData& step, Range pairs,
                         const std::vector<KeptManifolds>& last, std::span<KeptManifolds> lists,
-                        SpareManifolds& spare, std::vector<Contact>& list);
+                        SpareManifolds& spare, Clearances& clearances, std::vector<Contact>& list);
 
 }  // namespace tesserae

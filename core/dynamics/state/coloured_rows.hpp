@@ -74,9 +74,9 @@ constexpr std::uint32_t responses_of(std::uint32_t rows) {
 struct NormalRow {
     Eight mass, target;
 };
-/// What most sweeps do not need of it.
+/// What most sweeps do not need of rows, see NormalPass; `keep` is there where contacts are soft.
 struct NormalRelax {
-    Eight keep, target;
+    std::vector<Eight> target, keep;
 };
 
 /// Impulses on b of rows with so many tangents, but for rolling: along the normal, and across it
@@ -190,14 +190,14 @@ struct ColouredIslands {
     RowImpulses<4> round_impulses;              ///< of `round`, in world axes
     RowImpulses<3> impulses;                    ///< of `rows`, in the frames
     std::vector<RoundRow> round_rows;           ///< of `round`
-    std::vector<NormalRelax> round_relax;       ///< likewise
+    NormalRelax round_relax;                    ///< likewise
     std::vector<RoundFriction> round_friction;  ///< of `round`
     std::vector<RoundRolling> round_rolling;    ///< likewise
     std::vector<PairFrame> frames;              ///< of `general`
     std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
     std::vector<PairFriction> pair_friction;    ///< likewise
     std::vector<GeneralRow> rows;               ///< of `general`, see Batch::row
-    std::vector<NormalRelax> relax;             ///< likewise
+    NormalRelax relax;                          ///< likewise
     /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
     /// of the velocity along it at another; 0 for points that a batch does not have.
     std::vector<RoughEight> point_response;

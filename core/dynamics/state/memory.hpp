@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/algebra/rotor.hpp"
+#include "core/contact/manifold.hpp"
 #include "core/dynamics/state/bodies.hpp"
 
 namespace tesserae {
@@ -26,22 +28,25 @@ struct KeptImpulse {
 };
 
 struct KeptPoint {
-    std::array<double, 4> on_a;  ///< in a's frame [m]
-    double separation;           ///< where it was found, along the normal [m]
+    std::array<float, 4> on_a;  ///< on a's surface, from the smaller body's centre, in a's axes [m]
+    float separation;           ///< where it was found, along the normal [m]
     std::uint32_t feature;
 };
 /// The manifold of two bodies that hardly move against each other, as it was found in the frame of
 /// a where b was at `offset` and turned by `rotor`. That alone is state; the rest follows from it.
 struct KeptManifold {
-    enum class Keeps : std::uint8_t { kUnknown, kNothing, kNormalOfA, kNormalOfB, kNoFace };
+    enum class Keeps : std::uint8_t { kUnknown, kNormalOfA, kNormalOfB, kNoFace };
 
     BodyId a = 0, b = 0;                     ///< a < b
     PackedVec4 offset = PackedVec4::Zero();  ///< [m]
     Rotor rotor;                             ///< b's frame to a's
     PackedVec4 normal = PackedVec4::Zero();  ///< from a to b where it was found, in a's frame
-    std::vector<KeptPoint> points;
-    Keeps keeps = Keeps::kUnknown;
+    std::array<KeptPoint, kManifoldPoints> points = {};  ///< so many are there:
+    std::uint8_t count = 0;
     std::uint8_t no_seam = 0;  ///< with all points: see Contact
+    Keeps keeps = Keeps::kUnknown;
+
+    std::span<const KeptPoint> found() const { return {points.data(), count}; }
 };
 /// Those of a range of pairs. What is kept from step to step is there once, in both steps' lists,
 /// and is not changed; none is made as a constant, so that its memory can be used again.

@@ -42,9 +42,9 @@ TypeProperties properties_of(const BodyType& type) {
         [](const auto& shape) { return half_extents(shape, Mat4::Identity()).minCoeff(); },
         type.shape);
     p.slop = kSlop * least_half_size;
-    p.arm = least_half_size < p.radius ? p.radius : 0;
-
     p.flat = std::visit([]<class S>(const S&) { return S::kBounded && IsPolytope<S>; }, type.shape);
+    // A 16-cell is as wide as a ball along all its axes.
+    p.arm = p.flat || least_half_size < p.radius ? p.radius : 0;
     p.movable = is_movable(type);
     p.falls = !type.fixed_position;
     if (!type.fixed_position) p.inverse_mass = 1 / type.mass;

@@ -75,6 +75,43 @@ TEST(Blow, OnARowAtAWallIsTakenUp) {
                     << mass << " kg on " << row << (settings.solver == Solver::kSoft);
 }
 
+/// What a body before a wall presses together is taken apart, and does not throw it back: rows with
+/// and without gaps, of balls and of boxes, in double and in float.
+TEST(Blow, OnARowWithGapsIsTakenUpToo) {
+    std::mt19937_64 random(4);
+    for (int trial = 0; trial < 120; ++trial) {
+        const bool boxes = trial % 2 == 1;
+        const double e = trial % 4 < 2 ? 0 : uniform(random, 0.1, 0.5);
+        const double gap = trial % 3 == 0 ? 0 : uniform(random, 0, 0.006);
+        const double mass = uniform(random, 2, 20), speed = std::exp(uniform(random, -1, 2.3));
+        const int row = 3 + static_cast<int>(random() % 5);
+        const auto type = [&](double of) {
+            BodyType made = boxes ? box_type(Vec4::Ones(), of) : sphere_type(0.5, of);
+            made.restitution = e;
+            return made;
+        };
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitX(), 0, 0, e));
+        for (int i = 0; i < row; ++i) add(bodies, type(1), {0.5 + gap + (1 + gap) * i, 0, 0, 0});
+        add(bodies, type(mass), {0.5 + gap + (1 + gap) * row, 0, 0, 0}, {-speed, 0, 0, 0});
+        World world(bodies, without_gravity());
+        const double energy = kinetic_energy(bodies);
+        double least = energy, won = 0;
+        for (int i = 0; i < 360; ++i) {
+            world.step(kStep);
+            const double now = kinetic_energy(world.bodies());
+            least = std::min(least, now), won = std::max(won, now - least);
+        }
+        // What is parted goes on, each faster than the one before it.
+        const double part = kBiasPart * kPushedBias * kSlop * 0.5 / kStep;
+        double parted = 0.5 * mass * std::pow((row + 1) * part, 2);
+        for (int i = 1; i <= row; ++i) parted += 0.5 * std::pow(i * part, 2);
+        EXPECT_LT(won, 0.01 * energy + parted)
+            << "trial " << trial << ": " << mass << " kg at " << speed << " m/s, e " << e
+            << ", gap " << gap << ", row " << row;
+    }
+}
+
 TEST(Blow, OnATrappedBallAddsNoEnergy) {
     for (const PhysicsSettings& settings : both_solvers())
         for (const double mass : {1.0, 10.0, 100.0})

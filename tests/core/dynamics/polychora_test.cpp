@@ -202,5 +202,34 @@ TEST(Polychora, FlyAlikeWhateverAxesTheyAreGivenIn) {
     }
 }
 
+/// Those whose vertices lie on the axes are as wide as a ball along these, and no balls: what hits
+/// them beside the centre turns them, without friction too, by as much as from any other side.
+TEST(Polychora, AreTurnedByContactsWithoutFriction) {
+    using enum RegularPolychoron;
+    for (const RegularPolychoron which : {k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell}) {
+        BodyType type = regular_type(which, 1);
+        const auto& cell = std::get<Polychoron>(type.shape).body->hull.cells[0];
+        const Vec4 into = -cell.plane.normal;
+        // Beside the middle of a cell by half of the way to one of its corners.
+        const Vec4 corner = std::get<Polychoron>(type.shape).body->hull.vertices[cell.vertices[0]];
+        const Vec4 middle = -cell.plane.offset * into;
+        const Vec4 place = middle + 0.5 * (corner - middle);
+        Bodies bodies;
+        add(bodies, type);
+        add(bodies, sphere_type(0.1, 0.5), place - 0.2 * into, 2 * into);
+        World world(bodies, without_gravity());
+        run(world, 60);
+        const Bodies& now = world.bodies();
+        // From J = impulse, L = place ^ J and the bodies' momenta.
+        const Vec4 impulse = 0.5 * (bodies.velocity[1] - now.velocity[1]);
+        EXPECT_GT(impulse.norm(), 0.1) << int(which);
+        const TypeProperties& properties = world.simulation().types[0];
+        EXPECT_FALSE(properties.inverse_inertia == Bivector{}) << int(which);
+        const Bivector omega = properties.inverse_inertia.xy * wedge(place, impulse);
+        EXPECT_GT(norm(omega), 0.01) << int(which);
+        EXPECT_LT(norm(now.angular_velocity[0] - omega), 0.02 * norm(omega)) << int(which);
+    }
+}
+
 }  // namespace
 }  // namespace tesserae

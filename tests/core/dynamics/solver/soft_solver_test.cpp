@@ -96,7 +96,8 @@ TEST(SoftSolver, ReportsAResidualThatMoreIterationsLessen) {
     for (const int iterations : {2, 20}) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0));
-        for (int i = 0; i < 10; ++i) add(bodies, sphere_type(0.5), {0, 0.5 + i, 0, 0});
+        for (int i = 0; i < 10; ++i)
+            add(bodies, sphere_type(0.5), {0, 0.5 + i, 0, 0}, {0, i == 9 ? -0.03 : 0, 0, 0});
         PhysicsSettings settings = soft_settings();
         settings.iterations = iterations;
         World world(bodies, settings);
