@@ -15,15 +15,13 @@ constexpr double kRounding = 1.2e-7;
 /// Fits a float, and is as good as any larger distance.
 constexpr double kFar = 1e30;
 
-/// How far any point of a body has turned away from where it was, at most: a rotor's difference is
-/// half the root of the squares of both angles.
+}  // namespace
+
 double turned(const Rotor& from, const Rotor& to, double radius) {
     const double s = to.s - from.s, p = to.p - from.p;
     const Bivector b = to.b - from.b;
     return 2 * radius * std::sqrt(s * s + dot(b, b) + p * p);
 }
-
-}  // namespace
 
 void Clearances::begin(const Simulation& simulation, const StepData& step, Schedule& schedule) {
     resize_anew(next_, step.pairs.size());
@@ -84,7 +82,7 @@ double Clearances::nearer(const BodyPair& pair) const {
 
 void Clearances::set(std::size_t place, double distance) {
     // Rounded down: many small ways would else be lost in a float's last place.
-    next_[place] = static_cast<float>((1 - kRounding) * std::min(distance, kFar));
+    next_[place] = static_cast<float>((1 - kRounding) * std::clamp(distance, 0.0, kFar));
 }
 
 Clearances::Search::Search(const Clearances& all, const BodyPair& first)

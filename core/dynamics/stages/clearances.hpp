@@ -9,6 +9,10 @@
 
 namespace tesserae {
 
+/// How far any point of a body has turned away from where it was, at most: a rotor's difference is
+/// half the root of the squares of both angles.
+double turned(const Rotor& from, const Rotor& to, double radius);
+
 /// How far apart bodies are at least that have no contacts, from search to search: until they have
 /// come so much nearer to each other, no search would find any, and none is made. (Mirtich 1996
 /// calls it conservative; here the way is the one that the bodies have gone, not one to come.)

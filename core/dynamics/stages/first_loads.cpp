@@ -12,8 +12,7 @@ namespace {
 /// Runs of a range at least.
 constexpr std::size_t kRunGrain = 1024;
 
-/// What stands on a face that leans more than this looks up slides: the least upward part of a
-/// normal.
+/// The least upward part of a normal along which anything stands: on steeper faces it slides.
 constexpr double kUpward = 0.1;
 
 /// What is known of a body: it stands on something; what carries it is recalled; what it stands on
@@ -104,6 +103,7 @@ void FirstLoads::list_places(const Simulation& simulation, const StepData& step,
 void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
     using Vec5 = Eigen::Matrix<double, 5, 1>;
     above_.assign(simulation.bodies.size(), {});
+    const Vec4 up = up_of(simulation);
     const double kick = step.h * simulation.settings.gravity.norm();
     for (std::size_t end = supports_.size(); end > 0;) {
         std::size_t begin = end - 1;
@@ -136,7 +136,6 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
             const BodyId lower = place.support->lower;
             const double down = impulse * place.support->part;
             const Vec4 between = step.position[body] - step.position[lower];
-            const Vec4 up = up_of(simulation);
             above_[lower].impulse += down;
             above_[lower].moment += down * (place.from_centre + (between - up.dot(between) * up));
         }

@@ -69,14 +69,10 @@ struct Relative {
     Rotor rotor;
 };
 
-/// How far any point of b is from where it was, at most: a rotor's difference is half the root of
-/// the squares of both angles.
+/// How far any point of b is from where it was, at most.
 double way(const KeptManifold& from, const Relative& to, double radius) {
-    const Rotor &r = to.rotor, &q = from.rotor;
-    const double s = r.s - q.s, p = r.p - q.p;
-    const Bivector b = r.b - q.b;
     const Vec4 moved = to.offset - from.offset;
-    return stable_norm(moved) + 2 * radius * std::sqrt(s * s + dot(b, b) + p * p);
+    return stable_norm(moved) + turned(from.rotor, to.rotor, radius);
 }
 
 bool is_normal_of_face(const Shape& shape, const Vec4& direction) {
