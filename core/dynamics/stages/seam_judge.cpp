@@ -114,6 +114,15 @@ std::optional<Face> ground_face(const Simulation& simulation, const StepData& st
     return face;
 }
 
+/// Whether two faces are in one plane, where a body is.
+bool are_flush(const Face& face, const Face& other, const Simulation& simulation,
+               const StepData& step, BodyId body) {
+    if (face.normal.dot(other.normal) < kSame) return false;
+    const Vec4& at = step.position[body];
+    const double rise = face.normal.dot(at) - face.offset - (other.normal.dot(at) - other.offset);
+    return std::abs(rise) <= part_of(simulation.type_of(body), kFlush);
+}
+
 /// Whether the meeting is a seam, as a face of the body's ground tells.
 bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData& step,
                 const Meeting& m) {
@@ -124,11 +133,13 @@ bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData
         return face.normal.dot(point_below(c, m.body)) - face.offset;
     };
     const double flush = part_of(simulation.type_of(m.body), kFlush);
-    for (const Contact c : contacts)
-        if (height_over(ground, c) > flush) return false;
-    // The points may be few of those where the bodies touch: nor may the other body rise there.
     const Placed other(simulation, step, m.other);
     const std::optional<Face> face = other.face_near(ground.normal);
+    // No part of a body is over its own face, but a point may be by what the bodies lean.
+    if (!face || !are_flush(*face, ground, simulation, step, m.body))
+        for (const Contact c : contacts)
+            if (height_over(ground, c) > flush) return false;
+    // The points may be few of those where the bodies touch: nor may the other body rise there.
     if (!face) return other.depth_under(ground) >= -flush;
     if (face->normal.dot(normal) >= kSame) return false;
     const double skin = part_of(simulation.type_of(m.body), kSkin);
@@ -232,10 +243,7 @@ void SeamJudge::find_floor(const Face& face, const Simulation& simulation, const
     for (const Meeting& m : meetings) {
         if (simulation.type_of(m.other).movable || is_joined(m)) continue;
         const std::optional<Face> own = Placed(simulation, step, m.other).face_towards(face.normal);
-        if (!own || own->normal.dot(face.normal) < kSame) continue;
-        const Vec4& at = step.position[m.body];
-        const double rise = own->normal.dot(at) - own->offset - (face.normal.dot(at) - face.offset);
-        if (std::abs(rise) <= part_of(simulation.type_of(m.body), kFlush))
+        if (own && are_flush(*own, face, simulation, step, m.body))
             floor_.push_back({&m, *own, {}});
     }
 }
@@ -251,17 +259,21 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     double margin = 0;
     for (const Floor& f : floor_)
         margin = std::max(margin, margin_of(simulation, step, body, f.meeting->other));
+    // A wall's face ends at the floor, into which the body has sunk.
+    const TypeProperties& type = simulation.type_of(body);
+    double beside = part_of(type, kFlush);
+    for (const Meeting& m : meetings) beside += depth_of(step, m);
+    beside = std::min(beside, part_of(type, kSkin));
     Hyperplane plane;
     plane.normal = face.normal;
     plane.offset = face.offset;
     on_plane_.clear();
     find_contacts(0, placed.shape, placed.pose, 1, plane, placed.pose, margin, on_plane_);
 
-    const double flush = part_of(simulation.type_of(body), kFlush);
     for (const Contact& c : on_plane_) {
         const Vec4 point = point_below(c, 0);
         const auto under = std::find_if(floor_.begin(), floor_.end(), [&](const Floor& f) {
-            return Placed(simulation, step, f.meeting->other).distance_to(point) <= flush;
+            return Placed(simulation, step, f.meeting->other).distance_to(point) <= beside;
         });
         if (under == floor_.end()) return;
         under->points |= 1u << (&c - on_plane_.data());

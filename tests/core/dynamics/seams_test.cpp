@@ -275,6 +275,40 @@ TEST(Seams, AStepOfAMillimetreIsNone) {
         }
 }
 
+/// A box that slides along a wall of flush boxes whose lower edges lie in the floor, or beside it.
+/// It has sunk into the floor by a hair, and leans against the wall by another.
+TEST(Seams, OfAWallOnAFloorAreNone) {
+    for (const PhysicsSettings& settings : impulse_and_soft())
+        for (std::uint64_t seed = 0; seed < 60; ++seed) {
+            Draw draw{std::mt19937_64(seed)};
+            const double side = draw.any_size(0.5, 2), size = side * draw.number(0.2, 0.4);
+            BodyType tile = box_type(Vec4::Constant(side));
+            tile.fixed_position = tile.fixed_rotation = true;
+            tile.friction = 0;
+            Bodies bodies;
+            bodies.types.push_back(tile);
+            const double first = -side * draw.number(0, 1), height = seed % 3 == 0 ? 0.3 : 0.5;
+            for (int i = 0; i < 4; ++i)
+                for (int k = -1; k <= 1; ++k)
+                    add(bodies, 0, {first + i * side, height * side, 0.5 * side, (k + 0.2) * side});
+            add(bodies, plane_type(kUp, 0));
+            BodyType type = box_type({size * draw.number(1, 2), size, size, size});
+            type.friction = 0;
+            const double lean = (seed % 2 == 0 ? 1 : -1) * draw.any_size(1e-5, 1e-3);
+            const Rotor rotor = exp(Bivector{0, 0, 0, lean, 0, 0});
+            const double speed = draw.any_size(0.3, 10), gap = draw.any_size(1e-6, 1e-3);
+            const BodyId body = add(bodies, type, {0, 0.5 * size, -0.5 * size - gap, 0},
+                                    {speed, 0, 0, 0}, {}, rotor);
+            PhysicsSettings downward = settings;
+            downward.gravity = kDown;
+            World world(bodies, downward);
+            for (double t = 0; t * speed < 2 * side; t += kStep) world.step(kStep);
+            const Vec4 v = world.bodies().velocity[body];
+            EXPECT_LT(std::abs(v[0] - speed), 1e-6 * speed) << seed;
+            EXPECT_LT(std::abs(v[2]), 0.01) << seed;
+        }
+}
+
 /// What lies in the corner of a floor and walls, on edges and vertices too, stays there.
 TEST(Seams, NobodyInACornerIsLeftWithoutContacts) {
     for (const PhysicsSettings& settings : impulse_and_soft())
