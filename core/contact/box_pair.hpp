@@ -36,6 +36,12 @@ inline double cell_bias(const BoxPair& pair) {
     return kCellBias * std::min(pair.half_a.minCoeff(), pair.half_b.minCoeff());
 }
 
+/// Cosine of an angle (0.02 rad): a cell whose normal is nearer than that to the best one has the
+/// contact. An edge has one point or two, on which a thin box that lands a little aslant turns
+/// about faster than its next points are found. Less, and more thin boxes sink into each other;
+/// more, and normals jump by more where a box tips over an edge.
+constexpr double kLeaning = 0.9998;
+
 /// A face of a box of any dimension: for each axis the side that it lies on, or 0 where it
 /// extends. All 0 is the box, three 0 a cell, no 0 a vertex.
 using BoxFace = std::array<signed char, 4>;

@@ -8,7 +8,7 @@ namespace tesserae {
 namespace {
 
 /// A ball that leans less than this from a direction's [rad] lies flat to it: all of it may touch.
-constexpr double kFlat = 0.02;
+constexpr double kFlat = 0.5;
 /// One that leans less than this is even: which of its points is farthest is rounding.
 constexpr double kEven = 1e-5;
 

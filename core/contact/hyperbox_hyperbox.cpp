@@ -21,9 +21,12 @@ void find_under_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, doubl
 
 /// The vertices under one cell; false if they do not reach the pair's separation, so that another
 /// feature touches first.
+/// @param best   the pair's normal: what overlaps by so much along it does so by no more than
+///               that over the cosine at any point under a cell, however far the boxes reach
 bool meet_at_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double separation,
-                  double margin, BoxPoints& points) {
-    if (axis.gap < separation - cell_bias(pair)) return false;
+                  const Vec4& best, double margin, BoxPoints& points) {
+    const Vec4 normal = of_b ? normal_b(pair, axis) : normal_a(pair, axis);
+    if (axis.gap < separation - cell_bias(pair) && normal.dot(best) < kLeaning) return false;
     find_under_cell(pair, axis, of_b, margin, points);
     return points.least_separation() <= separation + cell_bias(pair);
 }
@@ -57,8 +60,9 @@ void find_points(const BoxPair& pair, const SeparatingAxes& axes, const BoxSepar
     // A cell of a goes first when it is nearly as good, so that rounding does not choose.
     const double value = separation.value;
     const bool b_first = axes.cell_b.gap > axes.cell_a.gap + cell_bias(pair);
+    const Vec4 best = separation.is_axis ? best_normal(pair, axes) : separation.witness.normal;
     for (const bool of_b : {b_first, !b_first})
-        if (meet_at_cell(pair, of_b ? axes.cell_b : axes.cell_a, of_b, value, margin, points))
+        if (meet_at_cell(pair, of_b ? axes.cell_b : axes.cell_a, of_b, value, best, margin, points))
             return;
     if (value > 0 && !(separation.is_axis && axes.is_edge()))
         meet_at_witness(pair, separation.witness, cell_bias(pair), points);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/contact/branchless.hpp"
@@ -11,8 +12,17 @@ namespace tesserae {
 namespace {
 
 /// Squared distances that differ by less than this part count as about equal: a point 5 % farther
-/// out is not worth giving up one that is deeper.
+/// out is not worth giving up one that is deeper,
 constexpr double kAboutEqual = 0.9;
+/// if it is so by this part of the manifold's length. What lies flat rocks by less: all of the
+/// points would be taken on the side to which it leans by a hair, and it would tip over to the
+/// other one.
+constexpr double kLevel = 1e-3;
+/// Squared distances that differ by less than this part are equal.
+constexpr double kAsFar = 1 - 1e-6;
+/// An overlap of this part of the manifold's length is no rest: points that are less than half as
+/// deep as the deepest are then taken last. They would take the places of those that push out.
+constexpr double kSunk = 0.05;
 /// Points that leave a line or a plane by less than 1e-6 of the manifold's length (squared here)
 /// do not span another dimension.
 constexpr double kFlat = 1e-12;
@@ -72,6 +82,7 @@ class Reduction {
             FourPoints& four = four_[i / 4];
             for (int k = 0; k < 4; ++k) four.place[k][i % 4] = place[k];
             four.most[i % 4] = i < points.size() ? kInfinity : -1;
+            separation_[i] = i < points.size() ? separation[order_[i]] : kInfinity;
         }
         for (std::size_t f = 0; f < fours_; ++f) {
             FourPoints& four = four_[f];
@@ -84,18 +95,20 @@ class Reduction {
 
     /// The points to keep.
     std::array<ContactPoint, kManifoldPoints> run() {
-        const auto off_span = [](const FourPoints& four) { return squared_norms(four.residual); };
-        double length = 0;
-        for (int dimension = 0; dimension < 3; ++dimension) {
-            const double most = farthest(off_span);
-            if (dimension == 0) length = most;
-            if (!(most > kFlat * length)) break;
-            keep(first_of(most));
-            const Vec4 direction = one_of(&FourPoints::residual, kept_[count_ - 1]).normalized();
-            for (std::size_t f = 0; f < fours_; ++f) remove_along(direction, four_[f].residual);
-        }
-        while (count_ < kManifoldPoints)
-            keep(first_of(farthest([](const FourPoints& four) { return four.nearest; })));
+        const auto from_kept = [](const FourPoints& four) { return four.nearest; };
+        length_ = std::sqrt(farthest(from_kept));
+        const std::size_t sunk =
+            -separation_[0] > kSunk * length_
+                ? static_cast<std::size_t>(std::upper_bound(separation_.begin(),
+                                                            separation_.begin() + points_.size(),
+                                                            0.5 * separation_[0]) -
+                                           separation_.begin())
+                : points_.size();
+        for (std::size_t i = sunk; i < points_.size(); ++i) four_[i / 4].most[i % 4] = -1;
+        span(sunk);
+        while (count_ < std::min(sunk, kManifoldPoints)) keep(first_of(farthest(from_kept)));
+        for (std::size_t i = sunk; i < points_.size(); ++i) four_[i / 4].most[i % 4] = kInfinity;
+        while (count_ < kManifoldPoints) keep(first_of(farthest(from_kept)));
 
         std::array<ContactPoint, kManifoldPoints> result;
         for (std::size_t i = 0; i < count_; ++i) result[i] = points_[order_[kept_[i]]];
@@ -103,6 +116,19 @@ class Reduction {
     }
 
   private:
+    /// Keeps points until all dimensions are spanned, or as many.
+    void span(std::size_t points) {
+        const auto off_span = [](const FourPoints& four) { return squared_norms(four.residual); };
+        double length = 0;
+        for (int dimension = 0; dimension < 3 && count_ < points; ++dimension) {
+            const double most = farthest(off_span);
+            if (dimension == 0) length = most;
+            if (!(most > kFlat * length)) break;
+            keep(first_of(most));
+            const Vec4 direction = one_of(&FourPoints::residual, kept_[count_ - 1]).normalized();
+            for (std::size_t f = 0; f < fours_; ++f) remove_along(direction, four_[f].residual);
+        }
+    }
     template <class Measure>
     double farthest(Measure measure) {
         Lanes largest = Lanes::Constant(-1);
@@ -112,13 +138,25 @@ class Reduction {
         }
         return largest.maxCoeff();
     }
-    /// The deepest of those that are about the farthest.
+    double measured(std::size_t i) const { return measured_[i / 4][i % 4]; }
+    /// Of those that are about the farthest the deepest, of those about as deep the farthest, of
+    /// those as far the one of the lowest feature.
     std::size_t first_of(double most) const {
         const double enough = kAboutEqual * most;
-        std::size_t i = 0;
-        while (i + 1 < points_.size() && !(measured_[i / 4][i % 4] >= enough)) ++i;
-        return i;
+        std::size_t deepest = 0;
+        while (deepest + 1 < points_.size() && !(measured(deepest) >= enough)) ++deepest;
+        const double level = separation_[deepest] + kLevel * length_;
+        double farthest = measured(deepest);
+        std::size_t end = deepest + 1;
+        for (; end < points_.size() && separation_[end] <= level; ++end)
+            farthest = std::max(farthest, measured(end));
+        std::size_t best = deepest;
+        while (!(measured(best) >= kAsFar * farthest)) ++best;
+        for (std::size_t i = best + 1; i < end; ++i)
+            if (measured(i) >= kAsFar * farthest && feature_of(i) < feature_of(best)) best = i;
+        return best;
     }
+    std::uint32_t feature_of(std::size_t i) const { return points_[order_[i]].feature; }
     Vec4 one_of(Coordinates FourPoints::*which, std::size_t i) const {
         const Coordinates& v = four_[i / 4].*which;
         return {v[0][i % 4], v[1][i % 4], v[2][i % 4], v[3][i % 4]};
@@ -139,6 +177,8 @@ class Reduction {
     std::array<std::uint8_t, kManifoldInput> order_;  ///< of the points, the deepest first
     std::array<FourPoints, kManifoldInput / 4> four_;
     std::array<Lanes, kManifoldInput / 4> measured_;
+    std::array<double, kManifoldInput> separation_;  ///< in the order
+    double length_ = 0;                              ///< of the manifold
     std::array<std::size_t, kManifoldPoints> kept_{};
     std::size_t count_ = 0;
 };

@@ -24,9 +24,10 @@ constexpr std::size_t kManifoldInput = 64;
 /// Moves the points to keep to the front, ascending by feature, and returns their number: all of
 /// them up to kManifoldPoints; else the deepest, the farthest from it, the farthest from their
 /// line, the farthest from their plane, and then four times the one farthest from all that are
-/// kept. Distances are seen along the normal. Of points about equally far the deepest is taken,
-/// then the one of lowest feature: the result depends on the set of points, not on their order.
-/// Takes at most kManifoldInput points.
+/// kept. Distances are seen along the normal. Of points about equally far the deepest is taken, of
+/// those about as deep the farthest, then the one of lowest feature. Where the deepest has sunk in
+/// by a visible part of the manifold's length, points half as deep go before all others. The result
+/// depends on the set of points, not on their order. Takes at most kManifoldInput points.
 /// @param normal  unit, of the contact, in the frame of the points
 std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal);
 

@@ -22,7 +22,7 @@ constexpr double kFlush = 1e-4;
 /// stopped there; more, and the look costs more.
 constexpr double kSkin = 0.1;
 
-/// Overlap that is left to the solver, as a part of the sum of two bodies' least half-sizes, usual
+/// Overlap that is left to the solver, as a part of twice the least half-size of two bodies, usual
 /// 0.25: bodies that would come deeper in half a sub-step are stopped where they touch. More, and
 /// the solver may push them out on the wrong side; less, and more bodies lose a part of a sub-step.
 constexpr double kDeepest = 0.25;

@@ -9,7 +9,7 @@
 namespace tesserae::scenes {
 namespace {
 
-constexpr std::size_t kImpulseBytes = 3 * 4 + 5 * 8;
+constexpr std::size_t kImpulseBytes = 3 * 4 + 8 + 4 * 4;
 /// Of each, where there is rolling friction; files of before there was have none.
 constexpr std::size_t kAngularBytes = 6 * 8;
 constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
@@ -81,7 +81,7 @@ std::string to_bytes(const ResumeRecord& record) {
         put(bytes, impulse.b);
         put(bytes, impulse.feature);
         put(bytes, impulse.normal);
-        for (int axis = 0; axis < 4; ++axis) put(bytes, impulse.tangent[axis]);
+        for (const float part : impulse.slope) put(bytes, part);
     }
     for (BodyId island : memory.asleep) put(bytes, island);
     for (double time : memory.still) put(bytes, time);
@@ -130,7 +130,7 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
         take(bytes, impulse.b);
         take(bytes, impulse.feature);
         take(bytes, impulse.normal);
-        for (int axis = 0; axis < 4; ++axis) take(bytes, impulse.tangent[axis]);
+        for (float& part : impulse.slope) take(bytes, part);
     }
     record.memory.asleep.resize(bodies);
     record.memory.still.resize(bodies);

@@ -54,7 +54,7 @@ inline std::string difference_of(const StepMemory& a, const StepMemory& b) {
             if (i >= memory.impulses.size()) return "no more contacts";
             const KeptImpulse& p = memory.impulses[i];
             return fmt::format("bodies {} and {}, feature {}, normal {:.17g}, tangent {}", p.a, p.b,
-                               p.feature, p.normal, text_of(p.tangent));
+                               p.feature, p.normal, text_of(p.tangent()));
         };
         const std::string of_a = text(a), of_b = text(b);
         if (of_a != of_b) return fmt::format("contact {}: {}; {}", i, of_a, of_b);

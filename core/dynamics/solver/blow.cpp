@@ -63,7 +63,7 @@ bool can_jam(const Simulation& simulation, const Blow& blow) {
     return simulation.needs.friction && simulation.needs.turning && !blow.driven;
 }
 
-bool has_jammed(double before, double after) { return after > (1 + kNotJammed) * before; }
+bool has_jammed(double before, double after) { return !(after <= (1 + kNotJammed) * before); }
 
 void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
                        const Blow& blow) {

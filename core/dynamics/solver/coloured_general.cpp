@@ -300,20 +300,23 @@ void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t poi
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const std::uint32_t row = batch.row + point;
-    std::array<std::array<float, 4>, kLanes> tangents = {};
+    const Eight& normals = coloured.impulses.normal[row];
+    std::array<std::array<float, 4>, kLanes> slopes = {};
     if (coloured.friction) {
         const Lane<Float8> all;
         const Frame<Float8> frame(load(all, coloured.frames[index].h));
+        LaneVec4<Float8> slope = frame.reflected(load(all, coloured.impulses.tangent[row]));
+        const Float8 normal = all.load(normals);
+        for (std::size_t i = 0; i < 4; ++i)
+            slope[i] = normal > Float8{} ? slope[i] / normal : Float8{};
         std::array<float*, kLanes> to;
-        for (std::size_t k = 0; k < kLanes; ++k) to[k] = tangents[k].data();
-        store_four(frame.reflected(load(all, coloured.impulses.tangent[row])).c, to);
+        for (std::size_t k = 0; k < kLanes; ++k) to[k] = slopes[k].data();
+        store_four(slope.c, to);
     }
     for (std::size_t k = 0; k < kLanes; ++k) {
         if (point >= batch.points[k]) continue;
         const std::uint32_t contact = batch.contact[k] + point;
-        ContactImpulse& impulse = stage.step.impulses[contact];
-        impulse.normal = stage.mass_unit * coloured.impulses.normal[row].lane[k];
-        impulse.tangent = stage.mass_unit * Eigen::Vector4f(tangents[k].data()).cast<double>();
+        stage.step.impulses[contact] = {stage.mass_unit * normals.lane[k], slopes[k]};
         if (coloured.rolling)
             stage.step.angular_impulses[contact] =
                 stage.mass_unit *

@@ -61,7 +61,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
     put(v - along * c.normal, points.velocity[lane]);
-    put(impulse.tangent / stage.mass_unit, points.impulse[lane]);
+    put(impulse.tangent() / stage.mass_unit, points.impulse[lane]);
     put({targets.solve - along, targets.relax - along, targets.keep,
          impulse.normal / stage.mass_unit},
         points.along[lane]);
@@ -142,7 +142,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
         const ContactTargets targets = targets_of.at(step.contacts.separation(first + p), along);
         put(place, point.place[lane]);
-        put(per_mass_unit * impulse.tangent, point.impulse[lane]);
+        put(per_mass_unit * impulse.tangent(), point.impulse[lane]);
         put({targets.solve, targets.relax, targets.keep, per_mass_unit * impulse.normal},
             point.along[lane]);
     }

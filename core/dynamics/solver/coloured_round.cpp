@@ -243,13 +243,10 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
                 continue;
             }
             ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];
-            impulse.normal = stage.mass_unit * normal;
-            impulse.tangent.setZero();
+            impulse = {stage.mass_unit * normal};
             if (!coloured.friction) continue;
-            for (int axis = 0; axis < 4; ++axis)
-                impulse.tangent[axis] =
-                    stage.mass_unit *
-                    coloured.round_impulses.tangent[i][static_cast<std::size_t>(axis)].lane[k];
+            for (std::size_t axis = 0; axis < 4 && normal > 0; ++axis)
+                impulse.slope[axis] = coloured.round_impulses.tangent[i][axis].lane[k] / normal;
             if (coloured.rolling)
                 stage.step.angular_impulses[batch.contact[k]] =
                     stage.mass_unit * bivector_in_lane(coloured.round_rolling[i].impulse, k);

@@ -91,7 +91,7 @@ void start_row(const Simulation& simulation, const StepData& step, const Contact
 
     // The normal may have turned since the impulse was.
     row.normal_impulse = impulse.normal;
-    const Vec4 last = impulse.tangent;
+    const Vec4 last = impulse.tangent();
     const Vec4 tangent = last - row.normal.dot(last) * row.normal;
     row.tangent_impulse = clamped_to_ball(tangent, row.friction * row.normal_impulse);
 }

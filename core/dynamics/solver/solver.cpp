@@ -189,9 +189,7 @@ void keep_hits(StepData& step, std::size_t island) {
 void keep_impulses(const Simulation& simulation, StepData& step, std::size_t island) {
     const ContactRow* row = rows_of(step, island).data();
     for (const std::uint32_t contact : contacts_of(step, island)) {
-        ContactImpulse& impulse = step.impulses[contact];
-        impulse.normal = row->normal_impulse;
-        impulse.tangent = row->tangent_impulse;
+        step.impulses[contact] = contact_impulse(row->normal_impulse, row->tangent_impulse);
         if (simulation.needs.rolling)
             step.angular_impulses[contact] = angular_impulse_of(*row, rolling_row_of(step, *row));
         ++row;
@@ -204,7 +202,7 @@ void take_push_back(const Simulation& simulation, StepData& step, std::size_t is
     for (const std::uint32_t contact : contacts_of(step, island)) {
         const ContactImpulse& load = step.impulses[contact];
         const Vec4 back = (load.normal - row->normal_impulse) * row->normal +
-                          (load.tangent - row->tangent_impulse);
+                          (load.tangent() - row->tangent_impulse);
         if (simulation.needs.turning)
             apply_impulse<true>(simulation, step, *row, back);
         else
@@ -217,17 +215,13 @@ void take_push_back(const Simulation& simulation, StepData& step, std::size_t is
     }
 }
 
-/// The rows without their impulses, which are taken back from the bodies, and without friction.
+/// The rows without their impulses and without friction.
 void restart_without_friction(const Simulation& simulation, StepData& step, std::size_t island) {
-    const std::span<ContactRow> rows = rows_of(step, island);
-    for (ContactRow& row : rows) {
-        const Vec4 impulse = row.normal_impulse * row.normal + row.tangent_impulse;
-        apply_impulse<true>(simulation, step, row, -impulse);
+    for (ContactRow& row : rows_of(step, island)) {
         row.normal_impulse = row.friction = 0;
         row.tangent_impulse.setZero();
         if (!simulation.needs.rolling) continue;
         RollingRow& rolling = rolling_row_of(step, row);
-        apply_angular_impulse(simulation, step, row.a, row.b, -angular_impulse_of(row, rolling));
         rolling.arm = 0;
         rolling.rolling.impulse.setZero(), rolling.twisting.impulse.setZero();
     }
@@ -249,9 +243,17 @@ void compress(const Simulation& simulation, StepData& step, std::size_t island, 
             sum += twice_kinetic_energy(simulation, step, id, motion_of(step, id));
         return sum;
     };
-    const double before = energy();
+    // Kept, and not won back from the impulses: what jams may leave the finite range.
+    thread_local std::vector<BodyMotion> before;
+    before.clear();
+    for (const BodyId id : bodies) before.push_back(motion_of(step, id));
+    const double energy_before = energy();
     run_pass(simulation, step, rows, Pass::kSolve, effort);
-    if (!has_jammed(before, energy())) return;
+    if (!has_jammed(energy_before, energy())) return;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        step.velocity[bodies[i]] = before[i].velocity;
+        step.angular_velocity[bodies[i]] = before[i].angular_velocity;
+    }
     restart_without_friction(simulation, step, island);
     run_pass(simulation, step, rows, Pass::kSolve, effort);
 }

@@ -60,7 +60,7 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
             const std::uint32_t feature = step.contacts.feature(i);
             while (is_of_pair() && old->feature < feature) ++old;
             const bool known = is_of_pair() && old->feature == feature;
-            step.impulses[i] = known ? ContactImpulse{old->normal, old->tangent} : ContactImpulse{};
+            step.impulses[i] = known ? ContactImpulse(*old) : ContactImpulse{};
             if (!simulation.needs.rolling) continue;
             step.angular_impulses[i] =
                 known ? angular[static_cast<std::size_t>(old - last.begin())] : Bivector{};

@@ -22,11 +22,10 @@ struct GapBounds {
     double deepest;  ///< overlap that is left to the solver [m]
 
     GapBounds(const FreePath& a, const FreePath& b) {
-        const double least = std::min(a.half_size(), b.half_size());
-        const double most = std::max(a.half_size(), b.half_size());
-        const double sum = least + (std::isfinite(most) ? most : least);
-        touch = kTouch * sum;
-        deepest = kDeepest * sum;
+        // Twice the smaller one's: in a thick wall a ball would sink out of sight.
+        const double both = 2 * std::min(a.half_size(), b.half_size());
+        touch = kTouch * both;
+        deepest = kDeepest * both;
     }
 };
 

@@ -31,8 +31,7 @@ StepReport report_of(const Simulation& simulation, const StepData& step) {
 
 KeptImpulse kept_impulse(const StepData& step, std::size_t contact) {
     const Contact c = step.contacts[contact];
-    const ContactImpulse& impulse = step.impulses[contact];
-    return {c.a, c.b, c.feature, impulse.normal, impulse.tangent};
+    return {step.impulses[contact], c.a, c.b, c.feature};
 }
 
 }  // namespace
@@ -127,8 +126,7 @@ void keep_pushing(const Simulation& simulation, const StepData& step, Range cont
         for (std::size_t i = run.begin; i < run.end; ++i) {
             const ContactImpulse& impulse = step.impulses[i];
             if (!(impulse.normal > 0)) continue;
-            left.impulses[place] = {run.a, run.b, step.contacts.feature(i), impulse.normal,
-                                    impulse.tangent};
+            left.impulses[place] = {impulse, run.a, run.b, step.contacts.feature(i)};
             if (simulation.needs.rolling) left.angular[place] = step.angular_impulses[i];
             ++place;
         }

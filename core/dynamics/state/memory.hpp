@@ -13,18 +13,27 @@
 
 namespace tesserae {
 
-/// What a contact point's rows start from, and what they end with.
+/// What a contact point's rows start from, and what they end with, on b. There is one of every
+/// point in memory twice: friction is in float, as a part of the normal impulse, whose range it
+/// has.
 struct ContactImpulse {
-    double normal = 0;                        ///< [N s], >= 0
-    PackedVec4 tangent = PackedVec4::Zero();  ///< friction impulse on b, world [N s]
-};
+    double normal = 0;                ///< [N s], >= 0
+    std::array<float, 4> slope = {};  ///< friction impulse over the normal one, world
 
-/// What a contact point's rows ended with: where the next step's solver starts.
-struct KeptImpulse {
+    Vec4 tangent() const { return normal * assembled(slope[0], slope[1], slope[2], slope[3]); }
+};
+/// @param tangent   [N s], zero where the normal impulse is
+inline ContactImpulse contact_impulse(double normal, const Vec4& tangent) {
+    ContactImpulse impulse{normal};
+    if (!(normal > 0)) return impulse;
+    Eigen::Map<Eigen::Vector4f>(impulse.slope.data()) = (tangent / normal).cast<float>();
+    return impulse;
+}
+
+/// What a contact point's rows ended with, > 0: where the next step's solver starts.
+struct KeptImpulse : ContactImpulse {
     BodyId a = 0, b = 0;        ///< a < b
     std::uint32_t feature = 0;  ///< which point of the pair; stays the same while the features do
-    double normal = 0;          ///< [N s], > 0
-    PackedVec4 tangent = PackedVec4::Zero();  ///< friction impulse on b, world [N s]
 };
 
 struct KeptPoint {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <numbers>
 #include <tuple>
 
 #include "core/algebra/rotor.hpp"
@@ -131,6 +132,39 @@ TEST(Manifold, TakesTheDeeperOfTwoPointsAboveEachOther) {
     }
     const Points kept = reduced(points, Vec4::UnitX());
     for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(kept[i].feature, i);
+}
+
+// A long prism's corners, in pairs nearer to each other than to the next: the side that is lower by
+// a hair must not get all of the points, nor the one that is far lower few.
+TEST(Manifold, SpreadsOverWhatLeansByAHair) {
+    for (const double lean : {0.0, 1e-12, 1e-6, -1e-6, 1e-4}) {
+        Points points;
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const double angle = 0.25 * std::numbers::pi * (i / 2),
+                         side = i % 2 == 0 ? 0.25 : -0.25;
+            points.push_back(
+                {Vec4(0, side, 2 * std::cos(angle), 2 * std::sin(angle)), lean * side, i});
+        }
+        int low = 0;
+        for (const ContactPoint& p : reduced(points, Vec4::UnitX())) low += p.point[1] > 0 ? 1 : 0;
+        EXPECT_GE(low, 3) << lean;
+        EXPECT_LE(low, 5) << lean;
+    }
+}
+
+// The 16 corners of a box that has sunk in to half its height.
+TEST(Manifold, TakesWhatIsDeepWhereABodyHasSunkIn) {
+    for (const double lean : {0.0, 1e-3, 0.02}) {
+        Points points;
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const Vec4 corner(0, (i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1,
+                              (i & 4) != 0 ? 1 : -1);
+            const double top = (i & 8) != 0 ? 1.0 : 0.0;
+            points.push_back({(1 + 0.1 * top) * corner, 0.5 * (top - 1) + lean * corner[1], i});
+        }
+        const Points kept = reduced(points, Vec4::UnitX());
+        for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(kept[i].feature, i) << lean;
+    }
 }
 
 TEST(Manifold, ManagesPointsOnALineAndInOnePlace) {

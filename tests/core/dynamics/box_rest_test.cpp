@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
@@ -167,6 +170,36 @@ TEST(Stack, CapsulesSideBySideCarryABox) {
     // that the last bit of tilt gives.
     for (BodyId id : {1, 2, 3})
         EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
+}
+
+/// Rulers, boards, sheets and cards that fall on each other crosswise: a thin box that lands a
+/// little aslant must not turn about one point after the other until both are one.
+TEST(Stack, OfThinBoxesDroppedCrosswiseDoesNotMerge) {
+    const Vec4 sizes[] = {{0.3, 0.003, 0.03, 0.03},  {2, 0.1, 0.2, 0.2},     {2, 0.05, 0.4, 0.4},
+                          {0.09, 0.001, 0.06, 0.06}, {0.9, 0.1, 0.45, 0.45}, {1.8, 0.2, 0.9, 0.9}};
+    for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
+        for (const Vec4& size : sizes)
+            for (std::uint64_t seed = 0; seed < 6; ++seed) {
+                std::mt19937_64 random(seed);
+                const auto uniform = [&](double least, double most) {
+                    return std::uniform_real_distribution<>(least, most)(random);
+                };
+                Bodies bodies;
+                add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+                BodyType type = box_type(size);
+                type.friction = 0.5;
+                const double fall = uniform(0.1, 3) * size[1];
+                add(bodies, type, {0, 0.5 * size[1], 0, 0});
+                add(bodies, type, {0, 1.5 * size[1] + fall, 0, 0}, Vec4::Zero(), {},
+                    exp(Bivector{0, uniform(-1.5, 1.5), uniform(-1.5, 1.5), 0, 0,
+                                 uniform(-1.5, 1.5)}));
+                World world(bodies, settings);
+                for (int i = 0; i < 480; ++i)
+                    ASSERT_LT(world.step(kStep).penetration, 0.2 * size[1]) << size[1] << seed;
+                const Bodies& now = world.bodies();
+                EXPECT_GT(now.position[2][1], 1.45 * size[1]) << size[1] << ' ' << seed;
+                EXPECT_LT(now.velocity[2].norm(), 3e-3) << size[1] << ' ' << seed;
+            }
 }
 
 }  // namespace

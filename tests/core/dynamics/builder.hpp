@@ -51,6 +51,15 @@ inline BodyType box_type(const Vec4& size, double mass = 1) {
     return type;
 }
 
+inline BodyType regular_type(RegularPolychoron regular, double radius) {
+    BodyType type = box_type(Vec4::Ones());
+    Polychoron shape;
+    shape.regular = regular, shape.radius = radius;
+    complete(shape);
+    type.shape = shape;
+    return type;
+}
+
 inline BodyType capsule_type(double radius, double height, double mass = 1) {
     BodyType type;
     type.shape = Hypercapsule{radius, height};
@@ -200,7 +209,7 @@ inline bool same_values(const StepMemory& a, const StepMemory& b) {
     for (std::size_t i = 0; i < a.impulses.size(); ++i) {
         const KeptImpulse &p = a.impulses[i], &q = b.impulses[i];
         if (p.a != q.a || p.b != q.b || p.feature != q.feature || p.normal != q.normal ||
-            p.tangent != q.tangent || !(angular_impulse(a, i) == angular_impulse(b, i)))
+            p.slope != q.slope || !(angular_impulse(a, i) == angular_impulse(b, i)))
             return false;
     }
     return true;

@@ -76,7 +76,7 @@ TEST(Memory, AscendsByPair) {
         const KeptImpulse& p = impulses[i];
         EXPECT_LT(p.a, p.b);
         EXPECT_GT(p.normal, 0);
-        EXPECT_LE(p.tangent.norm(), 0.5 * p.normal * (1 + 1e-6));  // mu = 0.5, in float
+        EXPECT_LE(p.tangent().norm(), 0.5 * p.normal * (1 + 1e-6));  // mu = 0.5, in float
         if (i > 0) {
             EXPECT_LT(std::tie(impulses[i - 1].a, impulses[i - 1].b), std::tie(p.a, p.b));
         }

@@ -14,16 +14,6 @@ namespace {
 
 using namespace testing;
 
-BodyType regular_type(RegularPolychoron which, double radius) {
-    Polychoron shape;
-    shape.regular = which;
-    shape.radius = radius;
-    complete(shape);
-    BodyType type;
-    type.shape = shape;
-    return type;
-}
-
 /// A rotor that takes a unit vector to -y.
 Rotor laid_down(const Vec4& normal) {
     // Two reflections: in the plane between both, then in the one of the target.
@@ -165,6 +155,36 @@ TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
             EXPECT_LT(now.velocity[id].norm() + norm(now.angular_velocity[id]), 1e-4)
                 << iterations << " " << id;
     }
+}
+
+/// Flat duoprisms, whose cells have up to 24 corners, of which eight points are kept.
+TEST(Polychora, ThatAreFlatLieStill) {
+    for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
+        for (const auto& [p, q, ratio] : {std::tuple{6, 8, 4.0},
+                                          {6, 8, 10.0},
+                                          {6, 6, 3.5},
+                                          {4, 8, 6.0},
+                                          {5, 12, 5.0},
+                                          {3, 9, 8.0}}) {
+            BodyType type = box_type(Vec4::Ones());
+            Duoprism shape;
+            shape.polygons = {p, q}, shape.radii = {0.5, 0.5 * ratio};
+            complete(shape);
+            type.shape = shape;
+            type.friction = 0.5;
+            // On an edge of the small polygon times the large one.
+            const double height = 0.5 * std::cos(pi / p);
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+            add(bodies, type, {0, height, 0, 0}, Vec4::Zero(), {},
+                exp(0.5 * Bivector{0.5 * pi + pi / p}));
+            World world(bodies, settings);
+            run(world, 240);
+            const double speed = world.bodies().velocity[1].norm();
+            EXPECT_LT(speed, 1e-6) << p << ' ' << q << ' ' << ratio;
+            EXPECT_NEAR(world.bodies().position[1][1], height, 1e-4)
+                << p << ' ' << q << ' ' << ratio;
+        }
 }
 
 /// A body whose principal axes are not its own flies as the same body does whose axes are.

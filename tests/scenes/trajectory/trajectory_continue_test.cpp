@@ -87,7 +87,7 @@ TEST_F(TrajectoryContinue, EndsWithTheBytesOfOneStraightRun) {
             EXPECT_EQ(resume->memory.still, row.memory.still);
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i)
-                EXPECT_EQ(resume->memory.impulses[i].tangent, row.memory.impulses[i].tangent);
+                EXPECT_EQ(resume->memory.impulses[i].slope, row.memory.impulses[i].slope);
             EXPECT_EQ(resume->memory.angular_impulses, row.memory.angular_impulses);
             const auto kept = kept_of(resume->memory), expected_kept = kept_of(row.memory);
             ASSERT_EQ(kept.size(), expected_kept.size());

@@ -50,11 +50,11 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
         made.memory.still.push_back(normal(random));
     }
     for (std::uint64_t i = 0; i < random() % 50; ++i)
-        made.memory.impulses.push_back({1,
-                                        2,
-                                        static_cast<std::uint32_t>(i),
-                                        normal(random),
-                                        {normal(random), normal(random), 0, 1}});
+        made.memory.impulses.push_back(
+            {{normal(random), {static_cast<float>(normal(random)), 1e-45f, -0.0f, 1}},
+             1,
+             2,
+             static_cast<std::uint32_t>(i)});
     for (std::uint32_t i = 0; i < (row % 4 == 0 ? bodies / 2 : 0); ++i) {
         if (i % 3 == 0) made.memory.kept.emplace_back();
         KeptManifold manifold;

@@ -153,7 +153,7 @@ TEST_F(TrajectoryTest, AnInterruptedRunEndsWithTheSameBytes) {
             ASSERT_EQ(resume->memory.impulses.size(), row.memory.impulses.size());
             for (std::size_t i = 0; i < row.memory.impulses.size(); ++i) {
                 EXPECT_EQ(resume->memory.impulses[i].normal, row.memory.impulses[i].normal);
-                EXPECT_EQ(resume->memory.impulses[i].tangent, row.memory.impulses[i].tangent);
+                EXPECT_EQ(resume->memory.impulses[i].slope, row.memory.impulses[i].slope);
                 EXPECT_EQ(resume->memory.impulses[i].feature, row.memory.impulses[i].feature);
             }
             EXPECT_EQ(bodies.position, row.bodies.position);

@@ -12,15 +12,6 @@ namespace {
 
 using namespace testing;
 
-BodyType polychoron_type(RegularPolychoron regular, double radius) {
-    BodyType type = box_type(Vec4::Ones());
-    Polychoron shape;
-    shape.regular = regular, shape.radius = radius;
-    complete(shape);
-    type.shape = shape;
-    return type;
-}
-
 Rotor random_rotor(std::mt19937_64& random, double angle) {
     std::normal_distribution<> part;
     const Bivector plane{part(random), part(random), part(random),
@@ -56,8 +47,8 @@ struct Placed {
         Bodies bodies;
         add(bodies, box_type({1, 0.8, 0.6, 1.2}));
         add(bodies, box_type({2, 0.1, 0.5, 0.5}));
-        add(bodies, polychoron_type(RegularPolychoron::k24Cell, 0.7));
-        add(bodies, polychoron_type(RegularPolychoron::k5Cell, 0.8));
+        add(bodies, regular_type(RegularPolychoron::k24Cell, 0.7));
+        add(bodies, regular_type(RegularPolychoron::k5Cell, 0.8));
         simulation = make_simulation(bodies, without_gravity());
         begin_step(simulation, step, kStep);
         step.rotor.assign(4, Rotor{});
@@ -188,7 +179,7 @@ Bodies falling_heap() {
     Bodies bodies = heap_of_spheres(54, 3);
     for (BodyId id = 0; id < bodies.size(); ++id) {
         if (!is_bounded(bodies.type_of(id).shape)) continue;
-        BodyType type = id % 3 == 0 ? polychoron_type(RegularPolychoron::k16Cell, 0.5)
+        BodyType type = id % 3 == 0 ? regular_type(RegularPolychoron::k16Cell, 0.5)
                                     : box_type({0.5, 0.6, 0.7, 0.4}, 60);
         type.friction = 0.5;
         bodies.rotor[id] = exp({0.1 * id, 0.2, 0.05 * id, -0.1, 0.3, 0.02 * id});

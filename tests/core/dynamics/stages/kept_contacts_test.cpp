@@ -68,15 +68,6 @@ class PairAtRest {
     Clearances clearances_;
 };
 
-BodyType regular_type(RegularPolychoron regular, double radius) {
-    BodyType type = box_type(Vec4::Ones());
-    Polychoron shape;
-    shape.regular = regular, shape.radius = radius;
-    complete(shape);
-    type.shape = shape;
-    return type;
-}
-
 double deepest(const std::vector<Contact>& contacts) {
     double least = std::numeric_limits<double>::infinity();
     for (const Contact& c : contacts) least = std::min(least, c.separation);
