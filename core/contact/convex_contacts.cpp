@@ -264,4 +264,26 @@ void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSepar
     points.put(distance - radii, origin, margin, out);
 }
 
+void convex_contacts_over_face(const ConvexBody& a, const ConvexBody& b, bool face_of_b,
+                               const Vec4& outward, double size, const Vec4& origin, double margin,
+                               PairContacts& out) {
+    thread_local Scratch scratch;
+    scratch.clear();
+    SurfacePiece& cell = face_of_b ? scratch.b : scratch.a;
+    (face_of_b ? b : a).piece_along(outward, cell);
+    const Vec4 normal = face_of_b ? Vec4(-cell.plane.normal) : cell.plane.normal;
+    if (face_of_b)
+        a.piece_along(normal, scratch.a);
+    else
+        b.piece_along(-normal, scratch.b);
+    PieceContacts points(normal, a.radius, b.radius, size, scratch);
+    points.add_over_cell(scratch.b, true, scratch.a);
+    points.add_over_cell(scratch.a, false, scratch.b);
+    points.put(-kMiss, origin, margin, out);
+}
+
+std::uint32_t feature_of_corner(bool of_b, std::uint32_t name) {
+    return name_of(PointKind::kVertex, of_b, name, 0);
+}
+
 }  // namespace tesserae

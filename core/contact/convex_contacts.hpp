@@ -50,4 +50,17 @@ struct ConvexBody {
 void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSeparation& nearest,
                      double size, const Vec4& origin, double margin, PairContacts& out);
 
+/// The corners of either body over one flat cell of the other, wherever they are nearest, each with
+/// its separation along the cell's normal; none where nothing is over it.
+/// @param face_of_b   the cell is b's, otherwise a's
+/// @param outward     near the cell's normal, world
+void convex_contacts_over_face(const ConvexBody& a, const ConvexBody& b, bool face_of_b,
+                               const Vec4& outward, double size, const Vec4& origin, double margin,
+                               PairContacts& out);
+
+/// What both functions call a corner of a body over the other's cell.
+/// @param of_b   the corner is b's
+/// @param name   of the corner, as in SurfacePiece::names
+std::uint32_t feature_of_corner(bool of_b, std::uint32_t name);
+
 }  // namespace tesserae

@@ -97,39 +97,66 @@ ConvexSeparation core_separation(const PlacedCore<A>& a, const PlacedCore<B>& b,
 /// Moves a piece from the body's frame.
 void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece);
 
+/// A shape as the general pair functions see it, for as long as they work on it.
+template <class S>
+class PlacedBody {
+  public:
+    PlacedBody(const S& shape, const Rotor& rotor, const Vec4& centre)
+        : turn_(to_matrix(rotor)), core_{shape, turn_, centre} {}
+    PlacedBody(const PlacedBody&) = delete;
+
+    const PlacedCore<S>& core() const { return core_; }
+    ConvexBody seen() const { return {core_, core_radius(core_.shape), piece_, level_}; }
+
+  private:
+    struct PieceAlong {
+        const PlacedCore<S>& core;
+        void operator()(const Vec4& direction, SurfacePiece& piece) const {
+            piece_along(core.shape, core.turn.transpose() * direction, piece);
+            move_to(core.turn, core.centre, piece);
+        }
+    };
+    struct LevelAt {
+        const PlacedCore<S>& core;
+        Level operator()(const Vec4& point) const {
+            const Vec4 own = core.turn.transpose() * (point - core.centre);
+            return {signed_distance(core.shape, own) + core_radius(core.shape),
+                    core.turn * normal(core.shape, own)};
+        }
+    };
+
+    Mat4 turn_;
+    PlacedCore<S> core_;
+    PieceAlong piece_{core_};
+    LevelAt level_{core_};
+};
+
 /// The general pair function for two shapes of which these views exist.
 template <class A, class B>
 void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b, double margin,
                       PairContacts& out) {
-    const Mat4 turn_a = to_matrix(pose_a.rotor), turn_b = to_matrix(pose_b.rotor);
     const Vec4 between = pose_b.position - pose_a.position;
     const double size = bounding_radius(a) + bounding_radius(b);
     out.apart = stable_norm(between) - size;
     if (!(out.apart <= margin)) return;
-    const PlacedCore<A> core_a{a, turn_a, Vec4::Zero()};
-    const PlacedCore<B> core_b{b, turn_b, between};
-    const auto piece_a = [&](const Vec4& direction, SurfacePiece& piece) {
-        piece_along(a, turn_a.transpose() * direction, piece);
-        move_to(turn_a, Vec4::Zero(), piece);
-    };
-    const auto piece_b = [&](const Vec4& direction, SurfacePiece& piece) {
-        piece_along(b, turn_b.transpose() * direction, piece);
-        move_to(turn_b, between, piece);
-    };
-    const auto level_a = [&](const Vec4& point) -> Level {
-        const Vec4 own = turn_a.transpose() * point;
-        return {signed_distance(a, own) + core_radius(a), turn_a * normal(a, own)};
-    };
-    const auto level_b = [&](const Vec4& point) -> Level {
-        const Vec4 own = turn_b.transpose() * (point - between);
-        return {signed_distance(b, own) + core_radius(b), turn_b * normal(b, own)};
-    };
+    const PlacedBody<A> body_a(a, pose_a.rotor, Vec4::Zero());
+    const PlacedBody<B> body_b(b, pose_b.rotor, between);
     const Vec4 guess = between.isZero(0) ? Vec4(Vec4::UnitX()) : stable_normalized(between);
-    const ConvexSeparation nearest =
-        core_separation(core_a, core_b, guess, size, margin + core_radius(a) + core_radius(b));
-    convex_contacts({core_a, core_radius(a), piece_a, level_a},
-                    {core_b, core_radius(b), piece_b, level_b}, nearest, size, pose_a.position,
-                    margin, out);
+    const ConvexSeparation nearest = core_separation(body_a.core(), body_b.core(), guess, size,
+                                                     margin + core_radius(a) + core_radius(b));
+    convex_contacts(body_a.seen(), body_b.seen(), nearest, size, pose_a.position, margin, out);
+}
+
+/// The same for convex_contacts_over_face().
+template <class A, class B>
+void general_contacts_over_face(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b,
+                                bool face_of_b, const Vec4& outward, double margin,
+                                PairContacts& out) {
+    const PlacedBody<A> body_a(a, pose_a.rotor, Vec4::Zero());
+    const PlacedBody<B> body_b(b, pose_b.rotor, pose_b.position - pose_a.position);
+    convex_contacts_over_face(body_a.seen(), body_b.seen(), face_of_b, outward,
+                              bounding_radius(a) + bounding_radius(b), pose_a.position, margin,
+                              out);
 }
 
 }  // namespace tesserae

@@ -77,6 +77,8 @@ std::uint32_t feature_over_face(const Shape& shape_a, const Shape& shape_b, bool
         [&]<class A, class B>(const A& a, const B& b) {
             if constexpr (NamesFeaturesOverCell<A, B>)
                 return feature_over_cell(a, b, face_of_b, outward, on_plane);
+            else if constexpr (NamesFeaturesOverCell<B, A>)
+                return feature_over_cell(b, a, !face_of_b, outward, on_plane);
             else
                 return on_plane;
         },

@@ -78,9 +78,24 @@ double half_extent_along(const HullShape& shape, const Vec4& direction) {
 }
 
 bool is_face_normal(const HullShape& shape, const Vec4& direction) {
+    return (direction - face_along(shape, direction).normal).norm() <= kFaceNormal;
+}
+
+Face face_along(const HullShape& shape, const Vec4& direction) {
     const HullBody& body = body_of(shape);
-    const HullCell& cell = body.hull.cells[body.normals.largest_at(direction).number];
-    return (direction - cell.plane.normal).norm() <= kFaceNormal;
+    const HalfSpace& plane = body.hull.cells[body.normals.largest_at(direction).number].plane;
+    return {plane.normal, plane.offset};
+}
+
+std::uint64_t faces_near(const HullShape& shape, const Vec4& point, double depth) {
+    const std::vector<HullCell>& cells = body_of(shape).hull.cells;
+    if (cells.size() > 64) return ~std::uint64_t{0};
+    std::uint64_t faces = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const HalfSpace& plane = cells[i].plane;
+        faces |= std::uint64_t{plane.offset - plane.normal.dot(point) <= depth} << i;
+    }
+    return faces;
 }
 
 Vec4 support(const HullShape& shape, const Vec4& direction) {

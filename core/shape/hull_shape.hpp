@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "core/convex/hull.hpp"
@@ -44,6 +45,8 @@ double ray_exit(const HullShape& shape, const Vec4& origin, const Vec4& directio
 /// be as one, and which of them is nearer is rounding.
 Vec4 shading_normal(const HullShape& shape, const Vec4& point);
 bool is_face_normal(const HullShape& shape, const Vec4& direction);
+Face face_along(const HullShape& shape, const Vec4& direction);
+std::uint64_t faces_near(const HullShape& shape, const Vec4& point, double depth);
 /// The largest of the cells' planes' distances.
 Level quick_level(const HullShape& shape, const Vec4& point);
 Rim rim(const HullShape& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);

@@ -119,8 +119,8 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     if (blow.fastest == 0) return;
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
-    const Range places = step.islands.places(island);
-    const Effort effort = effort_of_large_blow(simulation, places.end - places.begin, blow.fastest);
+    const Effort effort =
+        effort_of_large_blow(simulation, step.islands.contacts_in(island), blow.fastest);
     const Range range = coloured.bodies();
     compress_coloured(coloured, effort, threads, lanes);
     step.has_rows[island] = 1;
@@ -149,7 +149,7 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
-    const Effort effort = effort_of_load(simulation);
+    const Effort effort = effort_of_load(simulation, step.islands.contacts_in(island));
     step.residual[island] = has_conjugates(simulation)
                                 ? iterate_along_conjugates(coloured, effort, threads, lanes)
                                 : iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
@@ -177,8 +177,9 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
                              });
         threads.for_bodies(coloured.bodies(),
                            [&](Range bodies) { take_changes_back(stage, bodies); });
-        step.residual[island] =
-            iterate_coloured(coloured, Pass::kRelax, effort_of_load(simulation), threads, lanes);
+        step.residual[island] = iterate_coloured(
+            coloured, Pass::kRelax, effort_of_load(simulation, step.islands.contacts_in(island)),
+            threads, lanes);
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
         keep_coloured(coloured, threads);
     }

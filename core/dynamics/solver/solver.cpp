@@ -289,7 +289,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     const std::span<ContactRow> rows = rows_of(step, island);
     apply_recalled(simulation, step, rows);
     step.residual[island] =
-        run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation));
+        run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, rows.size()));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
     if (step.pushed[island])
         run_pass(simulation, step, rows, Pass::kRelax, effort_of_push(simulation));
@@ -302,7 +302,7 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
         const std::span<ContactRow> rows = rows_of(step, island);
         leave_whirling(simulation, step, rows);
         step.residual[island] =
-            run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation));
+            run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation, rows.size()));
         keep_impulses(simulation, step, island);
     }
     if (step.pushed[island]) take_push_back(simulation, step, island);

@@ -21,10 +21,17 @@ struct Effort {
         return residual <= (done < least ? kHardlyAnything : 1) * enough;
     }
 };
-/// Of what rests: its impulses are started from in the next sub-step, which goes on with them.
-inline Effort effort_of_load(const Simulation& simulation) {
-    const double tolerance = simulation.settings.tolerance;
-    return {simulation.settings.iterations, tolerance > 0 ? tolerance : -1, 2, kLeastSweeps};
+/// Of what rests: its impulses are started from in the next sub-step, which goes on with them. An
+/// island of few contacts may go on for longer, unless fewer sweeps than by default are asked for.
+inline Effort effort_of_load(const Simulation& simulation, std::size_t contacts) {
+    const PhysicsSettings& settings = simulation.settings;
+    Effort effort{settings.iterations, -1, 2, kLeastSweeps};
+    if (!(settings.tolerance > 0)) return effort;
+    effort.enough = settings.tolerance;
+    if (settings.solver == Solver::kImpulse && settings.iterations >= PhysicsSettings{}.iterations)
+        effort.sweeps = std::max(effort.sweeps, static_cast<int>(std::min<std::size_t>(
+                                                    kLoadWork / contacts, kMostLoadSweeps)));
+    return effort;
 }
 /// Of what takes overlap away, after the load: nothing goes on with it.
 inline Effort effort_of_push(const Simulation& simulation) {

@@ -65,13 +65,14 @@ struct Placed {
             },
             shape);
     }
+    /// How far it reaches along a direction from its centre, which may be nearer to one side.
     double reach_along(const Vec4& direction) const {
         const Vec4 own = to_own(direction);
-        return std::visit([&](const auto& s) { return half_extent_along(s, own); }, shape);
+        return std::visit([&](const auto& s) { return own.dot(support(s, own)); }, shape);
     }
     /// Of its lowest point over a face's plane.
     double height_over(const Face& face) const {
-        return face.normal.dot(pose.position) - face.offset - reach_along(face.normal);
+        return face.normal.dot(pose.position) - face.offset - reach_along(-face.normal);
     }
     /// Of its highest point under a face's plane.
     double depth_under(const Face& face) const {

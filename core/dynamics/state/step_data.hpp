@@ -55,6 +55,7 @@ struct Islands {
 
     std::size_t size() const { return first.size() - 1; }
     Range places(std::size_t island) const { return {first[island], first[island + 1]}; }
+    std::size_t contacts_in(std::size_t island) const { return first[island + 1] - first[island]; }
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 

@@ -5,28 +5,39 @@
 #include "core/contact/find_contacts.hpp"
 #include "tests/core/contact/pair_sets.hpp"
 
-// Contacts over one face of a box, against the same box with a hyperplane in the face's place.
+// Contacts over one face of a box or a hull, against a hyperplane in the face's place.
 namespace tesserae {
 namespace {
 
-/// A large box and a small one or a capsule that stands on its face, turned by little against it.
+enum class Kind { kBox, kCapsule, kHull };
+
+Polychoron cube(double side) {
+    Polychoron shape;
+    shape.regular = RegularPolychoron::k8Cell, shape.radius = side;
+    complete(shape);
+    return shape;
+}
+
+/// A large box and a small body that stands on its face, turned by little against it.
 struct Standing {
     Shape ground, body;
     Vec4 ground_at, body_at;
     Rotor ground_turn, body_turn;
     Hyperplane face;  ///< of the ground, where the body is
 
-    Standing(RandomGeometry& random, bool is_box, double side) {
+    Standing(RandomGeometry& random, Kind kind, bool on_hull, double side) {
         const double size = random.uniform(0.5, 2);
         Hyperbox box;
         box.size = side * Vec4::Ones();
-        ground = box;
+        ground = on_hull ? Shape(cube(side)) : Shape(box);
         ground_at = random.in_box(Vec4::Constant(10));
         ground_turn = random_rotor(random);
         const auto little = [&] { return random.uniform(-0.01, 0.01); };
         body_turn = ground_turn * exp({little(), little(), little(), little(), little(), little()});
         double height = 0.5 * size;
-        if (is_box) {
+        if (kind == Kind::kHull) {
+            body = cube(size);
+        } else if (kind == Kind::kBox) {
             Hyperbox standing;
             for (double& s : standing.size) s = size * random.uniform(0.5, 2);
             height = 0.5 * standing.size[0];
@@ -61,8 +72,9 @@ struct Standing {
 TEST(ContactsOverFace, AreThoseWithAHyperplaneThereAndHaveTheirNames) {
     RandomGeometry random(1);
     for (int i = 0; i < 4000; ++i) {
-        const bool is_box = i % 2 == 0, ground_first = i % 4 < 2;
-        const Standing s(random, is_box, 100);
+        const auto kind = static_cast<Kind>(i % 3);
+        const bool on_hull = i % 2 == 1, ground_first = i % 4 < 2;
+        const Standing s(random, kind, on_hull, 100);
         const std::vector<Contact> own = s.over_face(ground_first);
         std::vector<Contact> plane = s.on_plane();
         const Vec4 outward = Vec4::UnitX();
@@ -73,7 +85,7 @@ TEST(ContactsOverFace, AreThoseWithAHyperplaneThereAndHaveTheirNames) {
         std::sort(plane.begin(), plane.end(),
                   [](const Contact& c, const Contact& d) { return c.feature < d.feature; });
         ASSERT_EQ(own.size(), plane.size()) << i;
-        ASSERT_GE(own.size(), is_box ? 4u : 1u) << i;
+        ASSERT_GE(own.size(), kind == Kind::kCapsule ? 1u : 4u) << i;
         for (std::size_t k = 0; k < own.size(); ++k) {
             EXPECT_EQ(own[k].feature, plane[k].feature) << i;
             EXPECT_NEAR(own[k].separation, plane[k].separation, 1e-12) << i;
@@ -88,7 +100,7 @@ TEST(ContactsOverFace, LieOverTheFace) {
     RandomGeometry random(2);
     int points = 0;
     for (int i = 0; i < 4000; ++i) {
-        const Standing s(random, i % 2 == 0, random.uniform(0.3, 2));
+        const Standing s(random, static_cast<Kind>(i % 3), i % 2 == 1, random.uniform(0.3, 2));
         for (const Contact& c : s.over_face(false)) {
             ++points;
             EXPECT_LE(c.separation, 0.1);

@@ -56,6 +56,7 @@ struct Ride {
     Bivector omega;
     Rotor rotor;
     double tile = 1;             ///< side [m]
+    bool hull_tiles = false;     ///< 8-cells
     Vec4 offset = Vec4::Zero();  ///< of the tiles
     Rotor frame;                 ///< of all there is
     bool body_first = false;
@@ -76,7 +77,7 @@ Bivector rolling(const Vec4& velocity, double radius) {
     return below.dot(velocity) < 0 ? omega : -1.0 * omega;
 }
 
-enum class Kind { kBox, kSpinningBox, kBall, kRollingBall, kCapsule, kRollingCapsule };
+enum class Kind { kBox, kSpinningBox, kBall, kRollingBall, kCapsule, kRollingCapsule, kWedge };
 
 Ride random_ride(Kind kind, double friction, std::uint64_t seed) {
     Draw draw{std::mt19937_64(seed)};
@@ -91,6 +92,16 @@ Ride random_ride(Kind kind, double friction, std::uint64_t seed) {
     ride.height = 0.5 * size;
     const Bivector roll = rolling(ride.speed * ride.along, 0.5 * size);
     switch (kind) {
+        case Kind::kWedge: {
+            // A triangle's prism on one of its sides: its centre is not midway between bottom and
+            // top, and its front edge is acute.
+            Duoprism shape;
+            shape.polygons = {3, 4}, shape.radii = {size, 0.5 * size};
+            complete(shape);
+            ride.type.shape = shape;
+            ride.rotor = exp(draw.spin(1)) * exp(Bivector{pi / 12});
+            break;
+        }
         case Kind::kBox:
         case Kind::kSpinningBox:
             ride.type = box_type({size * draw.number(0.5, 2), size, size * draw.number(0.5, 2),
@@ -120,7 +131,8 @@ Ride random_ride(Kind kind, double friction, std::uint64_t seed) {
 void add_tiles(Bodies& bodies, const Ride& ride, Floor floor) {
     const Mat4 turn = to_matrix(ride.frame);
     const double side = ride.tile;
-    BodyType type = box_type(Vec4::Constant(side), 1000);
+    BodyType type = ride.hull_tiles ? regular_type(RegularPolychoron::k8Cell, side)
+                                    : box_type(Vec4::Constant(side), 1000);
     type.friction = ride.type.friction;
     type.fixed_position = type.fixed_rotation = floor != Floor::kLoose;
     bodies.types.push_back(type);
@@ -208,6 +220,34 @@ void expect_as_on_one_plane(Floor floor, int rides) {
                 EXPECT_LT(most.hop, 1e-4);
                 EXPECT_LT(most.speed, 0.01);
             }
+}
+
+void expect_as_on_one_plane(const Ride& ride, Floor floor) {
+    for (const PhysicsSettings& settings : impulse_and_soft()) {
+        const Difference most = difference(ride, floor, settings);
+        EXPECT_LT(most.path, 1e-3) << (settings.solver == Solver::kSoft ? "soft" : "");
+        EXPECT_LT(most.hop, 1e-4);
+        EXPECT_LT(most.speed, 0.01);
+    }
+}
+
+TEST(Seams, AreCrossedByWhatHasAnAcuteFrontEdge) {
+    for (const double friction : {0.0, 0.3})
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            SCOPED_TRACE(seed);
+            expect_as_on_one_plane(random_ride(Kind::kWedge, friction, seed),
+                                   seed % 2 == 0 ? Floor::kGrid : Floor::kStaggered);
+        }
+}
+
+TEST(Seams, OfPolychoronTilesAreCrossedAsOnePlane) {
+    for (const auto& [kind, friction] : kRides)
+        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+            SCOPED_TRACE(::testing::Message() << int(kind) << ' ' << friction << ' ' << seed);
+            Ride ride = random_ride(kind, friction, 500 + 10 * static_cast<unsigned>(kind) + seed);
+            ride.hull_tiles = true;
+            expect_as_on_one_plane(ride, Floor::kGrid);
+        }
 }
 
 TEST(Seams, OfAGridAreCrossedAsOnePlane) { expect_as_on_one_plane(Floor::kGrid, 4); }

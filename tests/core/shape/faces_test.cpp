@@ -23,6 +23,24 @@ TEST(Faces, TheOneAlongADirectionSupportsTheBox) {
     }
 }
 
+TEST(Faces, OfAHullSupportItAndMeetAtItsVertices) {
+    RandomGeometry random(3);
+    for (int i = 0; i < 300; ++i) {
+        const auto hull = random_shape<Polychoron>(random);
+        const Vec4 direction = random.direction();
+        const Face face = face_along(hull, direction);
+        const double size = bounding_radius(hull);
+        EXPECT_NEAR(face.normal.dot(support(hull, face.normal)), face.offset, 1e-9 * size);
+        for (const HullCell& cell : hull.body->hull.cells)
+            EXPECT_LE(cell.plane.normal.dot(direction), face.normal.dot(direction));
+        for (const Vec4& vertex : hull.body->hull.vertices)
+            EXPECT_GE(std::popcount(faces_near(hull, vertex, 1e-9 * size)), 4) << i;
+        if (hull.body->hull.cells.size() <= 64) {
+            EXPECT_EQ(faces_near(hull, Vec4::Zero(), 0), 0u);
+        }
+    }
+}
+
 TEST(Faces, AreNearAPointOnThem) {
     RandomGeometry random(2);
     for (int i = 0; i < 10000; ++i) {
