@@ -151,7 +151,7 @@ class Reduction {
         for (; end < points_.size() && separation_[end] <= level; ++end)
             farthest = std::max(farthest, measured(end));
         std::size_t best = deepest;
-        while (!(measured(best) >= kAsFar * farthest)) ++best;
+        while (best + 1 < end && !(measured(best) >= kAsFar * farthest)) ++best;
         for (std::size_t i = best + 1; i < end; ++i)
             if (measured(i) >= kAsFar * farthest && feature_of(i) < feature_of(best)) best = i;
         return best;

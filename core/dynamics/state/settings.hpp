@@ -23,8 +23,10 @@ struct PhysicsSettings {
     Vec4 gravity = {0, -10, 0, 0};  ///< [m/s^2]
     double duration = 1;            ///< [s]
     double steps_per_second = 240;  ///< [1/s]
-    int substeps = 1;     ///< of equal length, a step: pairs are looked for once, contacts in each
-    int iterations = 14;  ///< sweeps of the contact solver over an island, a sub-step, at most
+    int substeps = 1;  ///< of equal length, a step: pairs are looked for once, contacts in each
+    /// Sweeps of the contact solver over an island, a sub-step, at most; see effort_of_load() for
+    /// islands of few contacts.
+    int iterations = 14;
     double tolerance = 1e-4;  ///< residual [m/s] below which its sweeps end; 0: all of them
     Solver solver = Solver::kImpulse;
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
