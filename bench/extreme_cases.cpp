@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/bodies.hpp"
+#include "bench/resting_scenes.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
@@ -12,20 +12,6 @@ namespace tesserae::bench {
 namespace {
 
 using Measurements = std::vector<Measurement>;
-
-BodyType box_type(const Vec4& size, double mass) {
-    BodyType type;
-    type.shape = Hyperbox{size};
-    type.mass = mass;
-    type.friction = 0.5;
-    return type;
-}
-
-Bodies floor_and(double restitution = 0) {
-    Bodies bodies;
-    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5, restitution), Vec4::Zero());
-    return bodies;
-}
 
 /// What happens to bodies that should stay where they are put.
 struct Stay {
@@ -65,90 +51,6 @@ ExtremeCase staying(std::string name, Bodies bodies, double size, double seconds
                 World world(bodies, settings);
                 return rows_of(watch(world, seconds, steps_per_second), size);
             }};
-}
-
-/// Unit boxes on each other, their masses from the ground up.
-/// @param gap   between one box and the next, at first [m]
-Bodies tower(const std::vector<double>& masses, const Vec4& place = Vec4::Zero(), double gap = 0) {
-    Bodies bodies;
-    add(bodies, plane_type(Vec4::UnitY(), place[1], 0.5, 0), Vec4::Zero());
-    double y = 0.5;
-    for (const double mass : masses) {
-        add(bodies, box_type(Vec4::Ones(), mass), place + Vec4(0, y, 0, 0));
-        y += 1 + gap;
-    }
-    return bodies;
-}
-
-Bodies small_tower(int count, double size) {
-    Bodies bodies = floor_and();
-    for (int i = 0; i < count; ++i)
-        add(bodies, box_type(Vec4::Constant(size), 1), {0, size * (i + 0.5), 0, 0});
-    return bodies;
-}
-
-Bodies pyramid(int rows) {
-    Bodies bodies = floor_and();
-    for (int row = 0; row < rows; ++row)
-        for (int i = 0; i < rows - row; ++i)
-            add(bodies, box_type(Vec4::Ones(), 1000),
-                {1.05 * (i - 0.5 * (rows - row - 1)), 0.5 + row, 0, 0});
-    return bodies;
-}
-
-Bodies boards() {
-    Bodies bodies = floor_and();
-    for (int i = 0; i < 10; ++i)
-        add(bodies, box_type({2, 0.1, 0.5, 0.5}, 50), {0, 0.05 + 0.1 * i, 0, 0});
-    return bodies;
-}
-
-/// Each row moved by a quarter of a box.
-Bodies wall(int rows, int in_row) {
-    Bodies bodies = floor_and();
-    for (int row = 0; row < rows; ++row)
-        for (int i = 0; i < in_row; ++i)
-            add(bodies, box_type({1, 0.5, 0.5, 0.5}, 125),
-                {1.05 * i + (row % 2) * 0.25, 0.25 + 0.5 * row, 0, 0});
-    return bodies;
-}
-
-/// Spheres of 1 mm, 0.1, 10 and 1000 m in diameter, beside each other, and two of 1 m on the last.
-Bodies mixed_sizes() {
-    Bodies bodies = floor_and();
-    double x = 0;
-    for (const double radius : {0.0005, 0.05, 5.0, 500.0}) {
-        x += 1.5 * radius;
-        add(bodies, sphere_type(radius, 1000 * std::pow(radius, 4), 0.5, 0), {x, radius, 0, 0});
-        x += 1.5 * radius;
-    }
-    add(bodies, sphere_type(0.5, 60, 0.5, 0), {x - 750, 1000.5, 0, 0});
-    return bodies;
-}
-
-Bodies deep_boxes() {
-    Bodies bodies = floor_and();
-    for (int i = 0; i < 4; ++i)
-        add(bodies, box_type(Vec4::Ones(), 1000), {0.1 * i, 0.5 + 0.3 * i, 0.05 * i, 0});
-    return bodies;
-}
-
-Bodies deep_spheres() {
-    Bodies bodies = floor_and();
-    for (int i = 0; i < 8; ++i)
-        add(bodies, sphere_type(0.5, 1000, 0.5, 0), {0.01 * i, 0.5 + 0.01 * i, 0.005 * (i % 3), 0});
-    return bodies;
-}
-
-Bodies long_capsule() {
-    Bodies bodies = floor_and();
-    BodyType type;
-    type.shape = Hypercapsule{0.01, 200};
-    type.mass = 10;
-    type.friction = 0.5;
-    const BodyId id = add(bodies, type, {0, 0.01, 0, 0});
-    bodies.rotor[id] = exp(Bivector{0.25 * pi, 0, 0, 0, 0, 0});  // lies along x
-    return bodies;
 }
 
 /// Turns a box freely and tells how well its energy is kept.
@@ -415,6 +317,8 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(staying("pyramid of 55 boxes, 10 s", pyramid(10), 1, 10));
     cases.push_back(staying("ten boards of 2 x 0.1 x 0.5 x 0.5 m, 10 s", boards(), 0.1, 10));
     cases.push_back(staying("wall of 20 rows of 20 boxes, 10 s", wall(20, 20), 0.5, 10));
+    cases.push_back(staying("pile of twelve logs between walls, 10 s", logs(), 0.6, 10));
+    cases.push_back(staying("ruler of 3 mm across another, 4 s", rulers(), 0.003, 4));
     cases.push_back(staying("spheres of 1 mm to 1 km, 4 s", mixed_sizes(), 0.001, 4));
     for (const double rate : {30.0, 60.0, 120.0, 2000.0})
         cases.push_back(staying(fmt::format("tower of 10 boxes, steps of 1/{:g} s, 4 s", rate),

@@ -9,11 +9,6 @@
 namespace tesserae {
 namespace {
 
-/// Cores count as side by side when they part by less than this share of the smaller radius over
-/// the stretch that they share. The ends of that stretch then lie on the surfaces, seen from the
-/// middle between them, to half its square (5e-10 of the radius).
-constexpr double kParallel = 3e-5;
-
 /// Two cores as their relation sees them.
 struct Cores {
     CapsuleCore a, b;
@@ -118,7 +113,7 @@ void contacts_between(const Hypercapsule& a, const Pose& pose_a, const Hypercaps
     const double high = std::min(cores.a.half, cores.centre_b + shadow);
     const double stretch = high - low, radius = std::min(a.radius, b.radius);
     if (!(stretch > kShortStretch * radius &&
-          std::sqrt(cores.sine2) * stretch <= kParallel * radius))
+          std::sqrt(cores.sine2) * stretch <= kSideBySide * radius))
         return add(2, closest.s, distance - radii, closest.gap);
 
     // Where an end decides, it is the closest point itself that stands for it.

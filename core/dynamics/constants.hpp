@@ -93,9 +93,9 @@ constexpr std::size_t kBlowWork = 10000;
 constexpr double kLargeBlowResidual = 1e-3;
 
 /// Sweeps over a load whose island has few contacts, at most: the first over these contacts, usual
-/// 60000, and no more than the second, usual 50; `iterations` where that is more. Fewer, and a pile
-/// of twelve logs crushes itself, towers of 8 cubes of 1 cm that start with gaps fall; more, and
-/// heaps cost more while they settle.
+/// 60000, and no more than the second, usual 50; `iterations` where that is more. Fewer, and
+/// towers of 8 cubes of 1 cm that start with gaps fall, a wall of 20 rows whose ends are ragged
+/// leans by 40 mm; more, and heaps cost more while they settle.
 constexpr std::size_t kLoadWork = 60000, kMostLoadSweeps = 50;
 
 /// Sweeps over a load, at least, usual 8: what rests starts to lean, so slowly that a sweep changes

@@ -57,7 +57,7 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
     EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "a3f59abcedc390abaecf0041bad2a832");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "e1418009dd462a664a82b92e76192402");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "b1e5a39c73c64606e70e2820c9b7cb2a");
     EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "4feb6931146730955537e99bd832b0bc");
 }
 

@@ -227,5 +227,30 @@ TEST(Rest, OfAPyramid) {
     EXPECT_LT(world.step(kStep).penetration, 0.5e-3);
 }
 
+/// Twelve logs, 5, 4 and 3, between walls with some slack: where they lie on each other a hair
+/// aslant both ends of what they share must carry.
+TEST(Rest, OfAPileOfLogsBetweenWalls) {
+    constexpr double kRadius = 0.3;
+    for (const double slack : {1e-3, 0.01, 0.03}) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        for (const double side : {1.0, -1.0}) {
+            add(bodies, plane_type({0, 0, side, 0}, -(1 + slack) * 5 * kRadius, 0.5));
+            add(bodies, plane_type({0, 0, 0, side}, -(1 + slack) * kRadius, 0.5));
+        }
+        BodyType type = capsule_type(kRadius, 1);
+        type.friction = 0.5;
+        for (int row = 0; row < 3; ++row)
+            for (int i = 0; i < 5 - row; ++i)
+                add(bodies, type,
+                    {0, kRadius * (1 + row * std::sqrt(3.0)), kRadius * (2 * i + row - 4), 0},
+                    Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
+        World world(bodies, PhysicsSettings{});
+        for (int i = 0; i < 720; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
+        for (BodyId id = 5; id < bodies.size(); ++id)
+            EXPECT_LT(world.bodies().velocity[id].norm(), 0.02) << slack;
+    }
+}
+
 }  // namespace
 }  // namespace tesserae
