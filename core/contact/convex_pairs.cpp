@@ -107,31 +107,6 @@ void contacts_over_face(const BallProduct& a, const Pose& pose_a, const Hyperbox
     general_contacts_over_face(a, pose_a, b, pose_b, face_of_b, outward, margin, out);
 }
 
-std::uint32_t feature_over_cell(const HullShape&, const HullShape&, bool face_of_b, const Vec4&,
-                                std::uint32_t vertex) {
-    return feature_of_corner(!face_of_b, vertex);
-}
-
-std::uint32_t feature_over_cell(const HullShape&, const Hyperbox&, bool face_of_b, const Vec4&,
-                                std::uint32_t vertex) {
-    return feature_of_corner(!face_of_b, vertex);
-}
-
-std::uint32_t feature_over_cell(const HullShape&, const Hypercapsule&, bool face_of_b, const Vec4&,
-                                std::uint32_t vertex) {
-    return feature_of_corner(!face_of_b, vertex);
-}
-
-std::uint32_t feature_over_cell(const HullShape&, const BallProduct&, bool face_of_b, const Vec4&,
-                                std::uint32_t vertex) {
-    return feature_of_corner(!face_of_b, vertex);
-}
-
-std::uint32_t feature_over_cell(const BallProduct&, const Hyperbox&, bool face_of_b, const Vec4&,
-                                std::uint32_t vertex) {
-    return feature_of_corner(!face_of_b, vertex);
-}
-
 void contacts_between(const Hypersphere& sphere, const Pose& pose, const HullShape& body,
                       const Pose& body_pose, double margin, PairContacts& out) {
     sphere_contacts(sphere, pose, body, body_pose, margin, out);

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <concepts>
+#include <cstdint>
+
 #include "core/contact/contact.hpp"
+#include "core/contact/convex_contacts.hpp"
 #include "core/shape/ball_product.hpp"
 #include "core/shape/hull_shape.hpp"
 #include "core/shape/hyperbox.hpp"
@@ -44,18 +48,22 @@ void contacts_over_face(const BallProduct& a, const Pose& pose_a, const Hyperbox
                         const Pose& pose_b, bool face_of_b, const Vec4& outward, double margin,
                         PairContacts& out);
 
+/// Pairs of which contacts_over_face() is.
+template <class A, class B>
+concept IsGeneralPairWithFaces = (std::derived_from<A, HullShape> &&
+                                  (std::derived_from<B, HullShape> ||
+                                   std::derived_from<B, BallProduct> || std::same_as<B, Hyperbox> ||
+                                   std::same_as<B, Hypercapsule>)) ||
+                                 (std::derived_from<A, BallProduct> && std::same_as<B, Hyperbox>);
+
 /// The feature of a vertex of one body over a face of the other, as the general pair names it.
 /// @param vertex   as it is named over a plane
-std::uint32_t feature_over_cell(const HullShape& a, const HullShape& b, bool face_of_b,
-                                const Vec4& normal, std::uint32_t vertex);
-std::uint32_t feature_over_cell(const HullShape& a, const Hyperbox& b, bool face_of_b,
-                                const Vec4& normal, std::uint32_t vertex);
-std::uint32_t feature_over_cell(const HullShape& a, const Hypercapsule& b, bool face_of_b,
-                                const Vec4& normal, std::uint32_t vertex);
-std::uint32_t feature_over_cell(const HullShape& a, const BallProduct& b, bool face_of_b,
-                                const Vec4& normal, std::uint32_t vertex);
-std::uint32_t feature_over_cell(const BallProduct& a, const Hyperbox& b, bool face_of_b,
-                                const Vec4& normal, std::uint32_t vertex);
+template <class A, class B>
+requires IsGeneralPairWithFaces<A, B> std::uint32_t feature_over_cell(const A&, const B&,
+                                                                      bool face_of_b, const Vec4&,
+                                                                      std::uint32_t vertex) {
+    return feature_of_corner(!face_of_b, vertex);
+}
 
 void contacts_between(const Hypersphere& sphere, const Pose& pose, const HullShape& body,
                       const Pose& body_pose, double margin, PairContacts& out);

@@ -8,6 +8,9 @@ namespace tesserae {
 namespace {
 
 /// A ball that leans less than this from a direction's [rad] lies flat to it: all of it may touch.
+/// Less, and a disc that wobbles down has one point, which runs round its rim faster than it is
+/// found again (at 0.02 one of 6 mm sinks in by 42 mm); more, and points are made that do not
+/// touch.
 constexpr double kFlat = 0.5;
 /// One that leans less than this is even: which of its points is farthest is rounding.
 constexpr double kEven = 1e-5;

@@ -73,9 +73,9 @@ constexpr double kNoImpact = std::numeric_limits<double>::infinity();
 
 /// When a body has to be stopped, so that it does not pass through another.
 ///
-/// That is where it first touches the other: both are kTouch of their least half-sizes apart, or
-/// overlap so much more than at `from`. Only what would come to overlap by more than kDeepest of
-/// them is stopped: what slides, rolls or spins on another body is not, nor is what hits it slowly.
+/// That is where it first touches the other: both are kTouch of twice their least half-size apart,
+/// or overlap so much more than at `from`. Only what would come to overlap by more than kDeepest of
+/// it is stopped: what slides, rolls or spins on another body is not, nor is what hits it slowly.
 /// Conservative advancement (Mirtich 1996) along the normals that the pair's contact function
 /// finds: the gap along a fixed normal is a lower bound of the distance, whatever the shapes.
 /// @param from      time since the half began [s]; both are known not to pass before it

@@ -27,8 +27,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        const Range places = islands.places(island);
-        const auto size = static_cast<std::uint32_t>(places.end - places.begin);
+        const auto size = static_cast<std::uint32_t>(islands.contacts_in(island));
         if (fits && size >= (islands.held[island] ? coloured_from_.held : coloured_from_.free)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;

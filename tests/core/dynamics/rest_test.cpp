@@ -246,9 +246,9 @@ TEST(Rest, OfAPileOfLogsBetweenWalls) {
                     {0, kRadius * (1 + row * std::sqrt(3.0)), kRadius * (2 * i + row - 4), 0},
                     Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
         World world(bodies, PhysicsSettings{});
-        for (int i = 0; i < 720; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
+        for (int i = 0; i < 2400; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
         for (BodyId id = 5; id < bodies.size(); ++id)
-            EXPECT_LT(world.bodies().velocity[id].norm(), 0.02) << slack;
+            EXPECT_LT(world.bodies().velocity[id].norm(), 2e-3) << slack;
     }
 }
 
