@@ -36,8 +36,15 @@ bool has_jammed(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
-/// velocity, as if by an impulse.
+/// velocity, as if by an impulse, which ColouredIslands::angular_velocity then has.
 void take_changes_back(const ColouredStage& stage, Range bodies);
+
+/// Of the changes after that, without those by turning: twice their kinetic energy [J], and a part
+/// of them.
+double energy_of_changes(const ColouredStage& stage, Range bodies);
+void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part);
+/// Whether any of the bodies whirls().
+bool any_whirls(const ColouredStage& stage, Range bodies);
 
 /// Keeps the changes of the load, and takes back what the push then changed.
 void begin_push(const ColouredStage& stage, Range bodies);

@@ -1,5 +1,9 @@
 #include "core/dynamics/solver/coloured_solver.hpp"
 
+#include <algorithm>
+
+#include "core/dynamics/solver/contact_row.hpp"
+
 namespace tesserae {
 namespace {
 
@@ -21,6 +25,13 @@ template <class Change>
 Vec4 velocity_change(const Change& change) {
     const auto& v = change.velocity;
     return assembled(v[0], v[1], v[2], v[3]);
+}
+
+void put_angular(const Bivector& w, BodyChange& change) {
+    const auto& [xy, xz, xw, yz, yw, zw] = w;
+    change.first_planes = {static_cast<float>(xy), static_cast<float>(xz), static_cast<float>(xw),
+                           static_cast<float>(yz)};
+    change.rest[0] = static_cast<float>(yw), change.rest[1] = static_cast<float>(zw);
 }
 
 InverseInertia packed(const BivectorMap& map, double factor) {
@@ -87,6 +98,12 @@ void add_changes(const ColouredStage& stage, Range bodies) {
     }
 }
 
+bool any_whirls(const ColouredStage& stage, Range bodies) {
+    const BodyId* const ids = stage.step.coloured.bodies.data();
+    return std::any_of(ids + bodies.begin, ids + bodies.end,
+                       [&](BodyId id) { return whirls(stage.simulation, stage.step, id); });
+}
+
 void begin_push(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
@@ -115,12 +132,34 @@ void take_changes_back(const ColouredStage& stage, Range bodies) {
         BodyChange& change = step.coloured.changes[i];
         step.velocity[id] -= velocity_change(change);
         if (!stage.simulation.needs.turning) continue;
-        const Bivector turned = step.angular_velocity[id] - step.coloured.angular_velocity[i];
-        const Bivector all = angular_change(change) + turned;
-        change.first_planes = {static_cast<float>(all.xy), static_cast<float>(all.xz),
-                               static_cast<float>(all.xw), static_cast<float>(all.yz)};
-        change.rest[0] = static_cast<float>(all.yw), change.rest[1] = static_cast<float>(all.zw);
+        Bivector& turned = step.coloured.angular_velocity[i];
+        turned = step.angular_velocity[id] - turned;
+        put_angular(angular_change(change) + turned, change);
         step.angular_velocity[id] = step.angular_velocity[id] - angular_change(change);
+    }
+}
+
+double energy_of_changes(const ColouredStage& stage, Range bodies) {
+    const ColouredIslands& coloured = stage.step.coloured;
+    double sum = 0;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyChange& change = coloured.changes[i];
+        BodyMotion motion = {velocity_change(change), {}};
+        if (stage.simulation.needs.turning)
+            motion.angular_velocity = angular_change(change) - coloured.angular_velocity[i];
+        sum += twice_kinetic_energy(stage.simulation, stage.step, coloured.bodies[i], motion);
+    }
+    return sum;
+}
+
+void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        BodyChange& change = coloured.changes[i];
+        for (float& v : change.velocity) v *= part;
+        if (!stage.simulation.needs.turning) continue;
+        const Bivector& turned = coloured.angular_velocity[i];
+        put_angular(double{part} * (angular_change(change) - turned) + turned, change);
     }
 }
 

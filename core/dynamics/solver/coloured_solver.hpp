@@ -161,6 +161,38 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }
 
+/// Of the impulses as they are.
+inline LoadWork work_of_load(const ColouredIsland& island) {
+    const ColouredStage& stage = island.stage();
+    double work = 0;
+    for_all_rows(
+        island, OneThread{},
+        [&](BatchRange all) {
+            for (std::uint32_t i = all.begin; i < all.end; ++i) work += work_of_round(stage, i);
+        },
+        [&](BatchRange all) {
+            for (std::uint32_t i = all.begin; i < all.end; ++i) work += work_of_general(stage, i);
+        });
+    return {stage.mass_unit * work, energy_of_changes(stage, island.bodies())};
+}
+
+/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
+/// @return whether they were
+template <class Threads>
+bool end_gain(const ColouredIsland& island, const Threads& threads, const Overlap& overlap) {
+    if (!overlap.any) return false;
+    const LoadWork load = work_of_load(island);
+    if (!load.is_gain(overlap.weight)) return false;
+    const ColouredStage& stage = island.stage();
+    const auto part = static_cast<float>(load.best_part());
+    for_all_rows(
+        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, part); },
+        [&](BatchRange some) { leave_part_of_general(stage, some, part); });
+    threads.for_bodies(island.bodies(),
+                       [&](Range bodies) { leave_part_of_changes(stage, bodies, part); });
+    return true;
+}
+
 /// relax_island() of a coloured island.
 template <class Threads>
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
@@ -168,18 +200,21 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     if (simulation.settings.solver == Solver::kSoft) {
-        coloured.for_colours(threads, LaneCount::kOne, false,
-                             [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
-                                 at_work.for_batches(batches.general, kManifoldPoints,
-                                                     [&](BatchRange piece) {
-                                                         leave_whirling_general(stage, piece);
-                                                     });
-                             });
+        const bool whirls = any_whirls(stage, coloured.bodies());
+        if (whirls)
+            for_all_rows(
+                coloured, threads, [](BatchRange) {},
+                [&](BatchRange some) { leave_whirling_general(stage, some); });
         threads.for_bodies(coloured.bodies(),
                            [&](Range bodies) { take_changes_back(stage, bodies); });
-        step.residual[island] = iterate_coloured(
-            coloured, Pass::kRelax, effort_of_load(simulation, step.islands.contacts_in(island)),
-            threads, lanes);
+        const auto relax = [&] {
+            return iterate_coloured(coloured, Pass::kRelax,
+                                    effort_of_load(simulation, step.islands.contacts_in(island)),
+                                    threads, lanes);
+        };
+        step.residual[island] = relax();
+        if (!whirls && end_gain(coloured, threads, overlap_of(simulation, step, island)))
+            step.residual[island] = relax();
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
         keep_coloured(coloured, threads);
     }

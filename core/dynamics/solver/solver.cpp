@@ -114,17 +114,18 @@ double run_pass(const Simulation& simulation, StepData& step, std::span<ContactR
                          : run_pass<false, false>(simulation, step, rows, pass, effort);
 }
 
-/// The impulses that the rows start from.
-void apply_recalled(const Simulation& simulation, StepData& step, std::span<ContactRow> rows) {
+/// Of the rows' impulses.
+void apply_part(const Simulation& simulation, StepData& step, std::span<const ContactRow> rows,
+                double part) {
     for (const ContactRow& row : rows) {
-        const Vec4 impulse = row.normal_impulse * row.normal + row.tangent_impulse;
+        const Vec4 impulse = part * (row.normal_impulse * row.normal + row.tangent_impulse);
         if (simulation.needs.turning)
             apply_impulse<true>(simulation, step, row, impulse);
         else
             apply_impulse<false>(simulation, step, row, impulse);
         if (simulation.needs.rolling)
             apply_angular_impulse(simulation, step, row.a, row.b,
-                                  angular_impulse_of(row, rolling_row_of(step, row)));
+                                  part * angular_impulse_of(row, rolling_row_of(step, row)));
     }
 }
 
@@ -171,13 +172,56 @@ std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
 }
 
 /// Of what whirls() nothing is taken back.
-void leave_whirling(const Simulation& simulation, const StepData& step,
+/// @return whether anything does
+bool leave_whirling(const Simulation& simulation, const StepData& step,
                     std::span<ContactRow> rows) {
+    bool any = false;
     for (ContactRow& row : rows) {
         if (!whirls(simulation, step, row.a) && !whirls(simulation, step, row.b)) continue;
+        any = true;
         row.relax.mass = row.slide_mass = 0;
         row.tangent_mass.setZero();
     }
+    return any;
+}
+
+/// What the rows' impulses times their velocities are, less those times the relaxation's targets.
+double work_of(const Simulation& simulation, StepData& step, std::span<const ContactRow> rows) {
+    double sum = 0;
+    for (const ContactRow& row : rows) {
+        const Vec4 v =
+            relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
+        sum += row.normal_impulse * (row.normal.dot(v) - row.relax.target);
+        sum += row.tangent_impulse.dot(v);
+        if (simulation.needs.rolling)
+            sum += dot(angular_impulse_of(row, rolling_row_of(step, row)),
+                       step.angular_velocity[row.b] - step.angular_velocity[row.a]);
+    }
+    return sum;
+}
+
+/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
+/// @return whether they were
+bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) {
+    const Overlap overlap = overlap_of(simulation, step, island);
+    if (!overlap.any) return false;
+    const std::span<ContactRow> rows = rows_of(step, island);
+    const double with = work_of(simulation, step, rows);
+    apply_part(simulation, step, rows, -1);
+    const double without = work_of(simulation, step, rows);
+    const LoadWork load = {without, with - without};
+    const bool is_gain = load.is_gain(overlap.weight);
+    const double part = is_gain ? load.best_part() : 1;
+    for (ContactRow& row : rows) {
+        row.normal_impulse *= part;
+        row.tangent_impulse *= part;
+        if (!simulation.needs.rolling) continue;
+        RollingRow& rolling = rolling_row_of(step, row);
+        rolling.rolling.impulse *= part;
+        rolling.twisting.impulse *= part;
+    }
+    apply_part(simulation, step, rows, 1);
+    return is_gain;
 }
 
 void keep_hits(StepData& step, std::size_t island) {
@@ -287,7 +331,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     step.pushed[island] = is_pushed(simulation, step, island);
     start_rows(simulation, step, island, Cause::kLoad);
     const std::span<ContactRow> rows = rows_of(step, island);
-    apply_recalled(simulation, step, rows);
+    apply_part(simulation, step, rows, 1);  // the recalled ones
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, rows.size()));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
@@ -300,9 +344,13 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
         return relax_coloured_island(simulation, step, island, OneThread{});
     if (simulation.settings.solver == Solver::kSoft) {
         const std::span<ContactRow> rows = rows_of(step, island);
-        leave_whirling(simulation, step, rows);
-        step.residual[island] =
-            run_pass(simulation, step, rows, Pass::kRelax, effort_of_load(simulation, rows.size()));
+        const bool whirls = leave_whirling(simulation, step, rows);
+        const auto relax = [&] {
+            return run_pass(simulation, step, rows, Pass::kRelax,
+                            effort_of_load(simulation, rows.size()));
+        };
+        step.residual[island] = relax();
+        if (!whirls && end_gain(simulation, step, island)) step.residual[island] = relax();
         keep_impulses(simulation, step, island);
     }
     if (step.pushed[island]) take_push_back(simulation, step, island);

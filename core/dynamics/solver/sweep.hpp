@@ -51,6 +51,19 @@ inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t con
             kLargeBlowResidual * fastest, 4};
 }
 
+/// What a load's impulses have done to an island.
+struct LoadWork {
+    double work = 0;    ///< times the velocities before them, less their targets [J]
+    double energy = 0;  ///< twice the kinetic energy of what they have changed [J]
+
+    /// Of energy, over what they may give [J]. Sweeps only lessen it; but springs that push apart
+    /// what a blow has pressed into each other do much that sweeps do not take back in time, and a
+    /// row of nine boxes would be thrown back with four times the energy that it had.
+    bool is_gain(double allowed) const { return work + 0.5 * energy > allowed; }
+    /// The part of the impulses that leaves least to do, which is no gain.
+    double best_part() const { return std::clamp(-work / energy, 0.0, 1.0); }
+};
+
 /// One iteration of a pass. Every other one goes through the island backward: a load at one end of
 /// it then reaches the other in one iteration (a tower of ten leans 10 times less). The last one of
 /// kSolve goes forward and that of kRelax backward, which is best for towers listed from the

@@ -40,6 +40,12 @@ double slop_of(const Simulation& simulation, BodyId a, BodyId b) {
     return std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
 }
 
+/// That which contacts move [kg].
+double mass_of(const Simulation& simulation, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    return type.inverse_mass > 0 ? type.mass : 0;
+}
+
 /// Bodies that bounce and do not hit each other by themselves: stopping them at each other's
 /// surface if another blow drives them there would lose that energy. They may overlap and bounce in
 /// the next sub-step, so that blows go through a row of bodies one after the other.
@@ -121,6 +127,27 @@ bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t i
         place += run.size();
     }
     return false;
+}
+
+Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island) {
+    Overlap overlap;
+    const Range places = step.islands.places(island);
+    for (std::size_t place = places.begin; place < places.end;) {
+        const ContactList::Run run =
+            step.contacts.run(step.islands.contacts[place], step.contacts.size());
+        double deepest = 0;
+        for (std::size_t i = run.begin; i < run.end; ++i)
+            deepest = std::max(deepest, -step.contacts.separation(i));
+        const double depth = deepest - slop_of(simulation, run.a, run.b);
+        if (depth > 0) {
+            overlap.any = true;
+            const Vec4 normal = step.contacts.normal(run.begin);
+            overlap.weight += depth * std::abs(normal.dot(simulation.settings.gravity)) *
+                              (mass_of(simulation, run.a) + mass_of(simulation, run.b));
+        }
+        place += run.size();
+    }
+    return overlap;
 }
 
 BlowFilter::BlowFilter(const Simulation& simulation, const StepData& step, const Contact& c)

@@ -69,6 +69,13 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
 /// that move against each other: where nothing is held that is kept.
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island);
 
+/// Of an island's contacts, as far as they overlap by more than is left alone.
+struct Overlap {
+    bool any = false;
+    double weight = 0;  ///< the work that lifts the bodies of each out of it [J]
+};
+Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island);
+
 /// How hard an island's bodies hit each other.
 struct Blow {
     double fastest = 0;   ///< speed at which they meet [m/s]; 0: none does
