@@ -51,8 +51,7 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
     g.of_coloured = &of_coloured;
     g.simulation = &simulation;
     g.step = &step;
-    const std::vector<std::uint32_t>& first = step.islands.first;
-    const auto size = [&](std::uint32_t island) { return first[island + 1] - first[island]; };
+    const auto size = [&](std::uint32_t island) { return step.islands.contacts[island]; };
 
     // Those worth a message by falling size. The order of the small ones is all the same.
     g.order.clear();

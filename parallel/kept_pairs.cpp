@@ -17,10 +17,19 @@ constexpr std::size_t kBallGrain = 512, kCandidateGrain = 2048;
 /// and for ever once it rests.
 constexpr double kPart = 0.1, kSteps = 16;
 
+/// Bodies with more candidates each than this are crowded: most of the memory is that of contacts.
+constexpr std::size_t kCrowded = 2;
+
 }  // namespace
 
 void KeptPairs::refresh(const Simulation& simulation, StepData& step) {
-    if (!holds(step)) search(simulation, step);
+    if (!holds(step)) {
+        // Where bodies are crowded searches are rare, and share memory with the rows.
+        const auto crowded = [&] { return candidates_.size() > kCrowded * large_.size(); };
+        if (crowded() && !step.rows_in_use) release_rows(step);
+        search(simulation, step);
+        if (crowded()) sort_and_sweep_.release();
+    }
     choose_pairs(simulation, step);
 }
 

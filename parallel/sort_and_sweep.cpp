@@ -76,6 +76,12 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
     sort_pairs(simulation.bodies.size(), pairs);
 }
 
+void SortAndSweep::release() {
+    const auto of = [](auto& list) { tesserae::release(list); };
+    of(entries_), of(items_), of(cells_), of(found_), of(first_);
+    pair_lists_.release();
+}
+
 /// Sorted is the axis along which centres spread most. It changes the time, not the pairs.
 void SortAndSweep::choose_axes(const std::vector<Bounds>& bounds) {
     // In the bodies' order, so that rounding does not depend on threads.

@@ -32,6 +32,9 @@ class SortAndSweep {
     void overlapping_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
                            std::vector<BodyPair>& pairs);
 
+    /// Gives back the memory that it keeps for the next search.
+    void release();
+
   private:
     struct Level {
         int exponent;     ///< largest binary exponent of its bodies' extents

@@ -146,7 +146,7 @@ Experiment column_of_spheres(const Knobs& knobs) {
                     const double top = trial.bodies().position[kCount][1];
                     overlap = std::max(overlap, std::abs((2 * kCount - 1) * kRadius - top));
                 });
-                const double impulse = trial.memory().impulses.at(0).normal;  // of one sub-step
+                const double impulse = trial.memory().impulses[0].normal;  // of one sub-step
                 const double force = impulse * settings.substeps * settings.steps_per_second;
                 return {{"force on the floor", "relative",
                          std::abs(force / (kCount * kMass * kGravity) - 1)},

@@ -69,6 +69,7 @@ StepReport World::step(double dt, Schedule& schedule) {
 
 void World::advance_first_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
+    step_.rows_in_use = false;
     has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         has_fast_[bodies.begin / kBodyGrain] =
@@ -136,6 +137,7 @@ void World::find_contacts(Schedule& schedule) {
 void World::build_islands() {
     const Observed stage(*this, Stage::kBuildIslands, step_.contacts.size());
     island_builder_.build(simulation_, step_);
+    step_.rows_in_use = true;
 }
 
 void World::solve_blows(Schedule& schedule) {
@@ -191,13 +193,13 @@ void World::keep_impulses(Schedule& schedule) {
     const LeftImpulses left = left_impulses(simulation_, step_);
     if (!step_.asleep.empty()) return merge_impulses(simulation_, step_, left);
     const std::size_t count = step_.impulses.size();
-    first_pushing_.assign(count / kContactGrain + 2, 0);  // of no contacts there is a range too
+    first_pushing_.assign(count / kContactGrain + 2, {});  // of no contacts there is a range too
     schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
         first_pushing_[contacts.begin / kContactGrain + 1] = count_pushing(step_, contacts);
     });
     std::partial_sum(first_pushing_.begin(), first_pushing_.end(), first_pushing_.begin());
-    resize_anew(left.impulses, first_pushing_.back());
-    if (simulation_.needs.rolling) resize_anew(left.angular, first_pushing_.back());
+    left.impulses.resize_anew(first_pushing_.back());
+    if (simulation_.needs.rolling) resize_anew(left.angular, first_pushing_.back().impulses);
     schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
         keep_pushing(simulation_, step_, contacts, first_pushing_[contacts.begin / kContactGrain],
                      left);

@@ -67,8 +67,9 @@ class World {
     Seams seams_;
     FirstLoads first_loads_;
     Impacts impacts_;
-    std::vector<std::uint8_t> has_fast_;      ///< of every range of kBodyGrain bodies
-    std::vector<std::size_t> first_pushing_;  ///< of every range of contacts, and an end
+    std::vector<std::uint8_t> has_fast_;  ///< of every range of kBodyGrain bodies
+    /// Of every range of contacts, and an end.
+    std::vector<KeptImpulses::Size> first_pushing_;
     StageObserver* observer_ = nullptr;
 };
 

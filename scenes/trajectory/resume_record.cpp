@@ -124,13 +124,15 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     const bool has_angular = bytes.size() != plain;
     const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
-    record.memory.impulses.resize(impulses);
-    for (KeptImpulse& impulse : record.memory.impulses) {
+    record.memory.impulses.reserve_anew({impulses, impulses});
+    for (std::uint64_t i = 0; i < impulses; ++i) {
+        KeptImpulse impulse;
         take(bytes, impulse.a);
         take(bytes, impulse.b);
         take(bytes, impulse.feature);
         take(bytes, impulse.normal);
         for (float& part : impulse.slope) take(bytes, part);
+        record.memory.impulses.push_back(impulse);
     }
     record.memory.asleep.resize(bodies);
     record.memory.still.resize(bodies);

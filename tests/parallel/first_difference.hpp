@@ -52,7 +52,7 @@ inline std::string difference_of(const StepMemory& a, const StepMemory& b) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto text = [&](const StepMemory& memory) -> std::string {
             if (i >= memory.impulses.size()) return "no more contacts";
-            const KeptImpulse& p = memory.impulses[i];
+            const KeptImpulse p = memory.impulses[i];
             return fmt::format("bodies {} and {}, feature {}, normal {:.17g}, tangent {}", p.a, p.b,
                                p.feature, p.normal, text_of(p.tangent()));
         };

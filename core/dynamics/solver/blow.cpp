@@ -37,11 +37,9 @@ bool has_blow(const Simulation& simulation, const StepData& step, Range contacts
 
 Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island) {
     Blow all;
-    const Range places = step.islands.places(island);
-    for (std::size_t place = places.begin; place < places.end;) {
-        const std::size_t first = step.islands.contacts[place];
-        const ContactList::Run run = step.contacts.run(first, step.contacts.size());
-        const BlowFilter filter(simulation, step, step.contacts[first]);
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        const BlowFilter filter(simulation, step, step.contacts[run.begin]);
         for (std::size_t i = run.begin; i < run.end; ++i) {
             if (!filter.passes(step.contacts.point(i))) continue;
             const Blow blow = blow_of(simulation, step, step.contacts[i]);
@@ -49,7 +47,6 @@ Blow blow_of_island(const Simulation& simulation, const StepData& step, std::siz
             all.returned = std::max(all.returned, blow.returned);
         }
         all.driven |= is_driven(simulation, run.a) || is_driven(simulation, run.b);
-        place += run.size();
     }
     return all;
 }

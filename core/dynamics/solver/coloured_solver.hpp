@@ -120,7 +120,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
     const Effort effort =
-        effort_of_large_blow(simulation, step.islands.contacts_in(island), blow.fastest);
+        effort_of_large_blow(simulation, step.islands.contacts[island], blow.fastest);
     const Range range = coloured.bodies();
     compress_coloured(coloured, effort, threads, lanes);
     step.has_rows[island] = 1;
@@ -149,7 +149,7 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
-    const Effort effort = effort_of_load(simulation, step.islands.contacts_in(island));
+    const Effort effort = effort_of_load(simulation, step.islands.contacts[island]);
     step.residual[island] = has_conjugates(simulation)
                                 ? iterate_along_conjugates(coloured, effort, threads, lanes)
                                 : iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
@@ -209,7 +209,7 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
                            [&](Range bodies) { take_changes_back(stage, bodies); });
         const auto relax = [&] {
             return iterate_coloured(coloured, Pass::kRelax,
-                                    effort_of_load(simulation, step.islands.contacts_in(island)),
+                                    effort_of_load(simulation, step.islands.contacts[island]),
                                     threads, lanes);
         };
         step.residual[island] = relax();

@@ -15,7 +15,7 @@ constexpr lanes::Lane<Float8> kAll;
 template <std::size_t kTangents, class Visit>
 [[gnu::always_inline]] inline void visit_rows(RowImpulses<kTangents>& impulses,
                                               RowImpulses<kTangents>& lasts,
-                                              RowImpulses<kTangents>& directions,
+                                              RowImpulses<kTangents, RoughEight>& directions,
                                               std::uint32_t first, std::uint32_t rows,
                                               const Visit& visit) {
     for (std::uint32_t row = first; row < first + rows; ++row)
@@ -38,17 +38,18 @@ void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& v
 }
 
 /// Keeps impulses where they are, without a direction.
-constexpr auto begin = [](const Eight& impulse, Eight& last, Eight& direction) {
+constexpr auto begin = [](const Eight& impulse, Eight& last, RoughEight& direction) {
     last = impulse;
     direction = {};
 };
 /// As if all of the impulses had come since, without a direction.
-constexpr auto begin_at_none = [](const Eight&, Eight& last, Eight& direction) {
-    last = direction = {};
+constexpr auto begin_at_none = [](const Eight&, Eight& last, RoughEight& direction) {
+    last = {};
+    direction = {};
 };
 /// Impulses go from where they were along the new direction.
 auto go(float carried, float length) {
-    return [carried, length](Eight& impulse, Eight& last, Eight& direction) {
+    return [carried, length](Eight& impulse, Eight& last, RoughEight& direction) {
         const Float8 from = kAll.load(last);
         const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction);
         const Float8 here = from + length * along;
@@ -58,31 +59,28 @@ auto go(float carried, float length) {
     };
 }
 
-/// What sums over a batch's rows add up: changes of impulses, directions and impulses times the
-/// velocities of the load's start less the targets.
+/// What sums over a batch's rows add up: changes of impulses and impulses times the velocities of
+/// the load's start less the targets.
 class Work {
   public:
-    [[gnu::always_inline]] void add(const Eight& impulse, const Eight& last, const Eight& direction,
-                                    Float8 velocity) {
+    [[gnu::always_inline]] void add(const Eight& impulse, const Eight& last, Float8 velocity) {
         const Float8 now = kAll.load(impulse);
         of_step_ = simd::fused(kAll.load(last) - now, velocity, of_step_);
-        of_direction_ = simd::fused(-kAll.load(direction), velocity, of_direction_);
         of_all_ = simd::fused(now, velocity, of_all_);
     }
-    void store(std::array<Eight, 3>& to) const {
+    void store(std::array<Eight, 2>& to) const {
         kAll.store(of_step_, to[0]);
-        kAll.store(of_direction_, to[1]);
-        kAll.store(of_all_, to[2]);
+        kAll.store(of_all_, to[1]);
     }
 
   private:
-    Float8 of_step_{}, of_direction_{}, of_all_{};
+    Float8 of_step_{}, of_all_{};
 };
 
 /// Of a batch of any bodies.
 Work work_of_general(const ColouredIslands& coloured, std::uint32_t index) {
     const auto& [normal, tangent] = coloured.impulses;
-    const RowImpulses<3>&last = coloured.last_general, &direction = coloured.general_direction;
+    const RowImpulses<3>& last = coloured.last_general;
     const Batch& batch = coloured.general[index];
     const std::array<Float8, 4> along = lanes::load_all(kAll, coloured.frames[index].motion);
     std::array<Float8, 6> across{};
@@ -90,12 +88,12 @@ Work work_of_general(const ColouredIslands& coloured, std::uint32_t index) {
     Work work;
     for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
         const lanes::Place<Float8> at = lanes::place_of(kAll, coloured.rows[row]);
-        work.add(normal[row], last.normal[row], direction.normal[row],
+        work.add(normal[row], last.normal[row],
                  lanes::along_at(at, along) - kAll.load(coloured.rows[row].along.target));
         if (!coloured.friction) continue;
         const lanes::LaneVec4<Float8> slip = lanes::across_at(at, across);
         for (std::size_t i = 0; i < 3; ++i)
-            work.add(tangent[row][i], last.tangent[row][i], direction.tangent[row][i], slip[i]);
+            work.add(tangent[row][i], last.tangent[row][i], slip[i]);
     }
     return work;
 }
@@ -255,14 +253,13 @@ void weigh_step(const ColouredStage& stage, Range bodies) {
 void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
-    const RowImpulses<4>&last = coloured.last_round, &direction = coloured.round_direction;
+    const RowImpulses<4>& last = coloured.last_round;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         Work work;
-        work.add(normal[i], last.normal[i], direction.normal[i],
-                 -kAll.load(coloured.round_rows[i].along.target));
+        work.add(normal[i], last.normal[i], -kAll.load(coloured.round_rows[i].along.target));
         if (coloured.friction)
             for (std::size_t k = 0; k < 4; ++k)
-                work.add(tangent[i][k], last.tangent[i][k], direction.tangent[i][k],
+                work.add(tangent[i][k], last.tangent[i][k],
                          kAll.load(coloured.round_friction[i].slip[k]));
         work.store(coloured.round_work[i]);
     }

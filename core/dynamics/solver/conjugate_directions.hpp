@@ -41,12 +41,13 @@ class ConjugateDirections {
         for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
             for (std::size_t k = 0; k < 3; ++k) sums[k] += stage.step.coloured.body_sums[i][k];
         rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
-        const Sums of_rows = work();
-        for (std::size_t k = 0; k < 3; ++k) sums[k] += of_rows[k];
+        const auto [of_step, of_all] = work();
+        sums[0] += of_step, sums[1] += of_direction_, sums[2] += of_all;
         const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
         look_for_rise(ratio, sums[2]);
         carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
         for_bodies([this](auto... of) { find_direction(of..., carried_); });
+        of_direction_ = of_step + carried_ * of_direction_;
 
         double twice_energy = 0, fastest = 0;
         for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i) {
@@ -64,6 +65,7 @@ class ConjugateDirections {
         last_slope_ = holds_ ? slope_ : 0;
         if (holds_) return for_bodies([this](auto... of) { go_along(of..., length_); });
         plain_ = std::max(0, plain_ - 1);
+        of_direction_ = 0;
         for_bodies([](auto... of) { begin_directions(of...); });
     }
 
@@ -146,12 +148,12 @@ class ConjugateDirections {
         return largest;
     }
     /// Sums of round_work and general_work, in the order of the batches for any number of threads.
-    Sums work() const {
+    std::array<double, 2> work() const {
         const ColouredIslands& coloured = island_.stage().step.coloured;
-        Sums sums = {};
+        std::array<double, 2> sums = {};
         const auto add = [&](const auto& list, BatchRange batches) {
             for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-                for (std::size_t k = 0; k < 3; ++k)
+                for (std::size_t k = 0; k < 2; ++k)
                     for (const float x : list[i][k].lane) sums[k] += x;
         };
         island_.for_colours(OneThread{}, LaneCount::kOne, false,
@@ -165,6 +167,7 @@ class ConjugateDirections {
     const ColouredIsland& island_;
     const Threads& threads_;
     double slope_ = 0, last_slope_ = 0;  ///< r.z
+    double of_direction_ = 0;            ///< the rows' part of r.p
     double last_energy_ = 0;             ///< at the end of the last pair
     double rounding_ = 0;                ///< of a slope
     int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time

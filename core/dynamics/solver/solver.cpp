@@ -130,32 +130,33 @@ void apply_part(const Simulation& simulation, StepData& step, std::span<const Co
 }
 
 std::span<ContactRow> rows_of(StepData& step, std::size_t island) {
-    const Range places = step.islands.places(island);
-    return {&step.rows[step.islands.first_row[island]], places.end - places.begin};
+    return {&step.rows[step.islands.first_row[island]], step.islands.contacts[island]};
 }
 
-std::span<const std::uint32_t> contacts_of(const StepData& step, std::size_t island) {
-    const Range places = step.islands.places(island);
-    return {&step.islands.contacts[places.begin], places.end - places.begin};
+/// Calls visit(row, contact) for all rows of an island; contact: its place in the list.
+template <class Visit>
+void for_each_row(StepData& step, std::size_t island, const Visit& visit) {
+    ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        for (std::size_t contact = run.begin; contact < run.end; ++contact) visit(*row++, contact);
+    }
 }
 
 void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
     const bool made = step.has_rows[island];
-    ContactRow* row = rows_of(step, island).data();
-    for (const std::uint32_t index : contacts_of(step, island)) {
-        const Contact contact = step.contacts[index];
-        if (!made) *row = make_row(simulation, step, contact);
+    for_each_row(step, island, [&](ContactRow& row, std::size_t place) {
+        const Contact contact = step.contacts[place];
+        if (!made) row = make_row(simulation, step, contact);
         const ContactImpulse start =
-            cause == Cause::kLoad ? step.impulses[index] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, step.pushed[island] != 0, *row);
-        if (simulation.needs.rolling) {
-            RollingRow& rolling = rolling_row_of(step, *row);
-            if (!made) rolling = make_rolling_row(simulation, step, *row);
-            start_rolling_row(
-                *row, cause == Cause::kLoad ? step.angular_impulses[index] : Bivector{}, rolling);
-        }
-        ++row;
-    }
+            cause == Cause::kLoad ? step.impulses[place] : ContactImpulse{};
+        start_row(simulation, step, contact, start, cause, step.pushed[island] != 0, row);
+        if (!simulation.needs.rolling) return;
+        RollingRow& rolling = rolling_row_of(step, row);
+        if (!made) rolling = make_rolling_row(simulation, step, row);
+        start_rolling_row(row, cause == Cause::kLoad ? step.angular_impulses[place] : Bivector{},
+                          rolling);
+    });
     step.has_rows[island] = 1;
 }
 
@@ -225,38 +226,34 @@ bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) 
 }
 
 void keep_hits(StepData& step, std::size_t island) {
-    const ContactRow* row = rows_of(step, island).data();
-    for (const std::uint32_t contact : contacts_of(step, island))
-        step.hit[contact] = (row++)->normal_impulse > 0;
+    for_each_row(step, island, [&](const ContactRow& row, std::size_t contact) {
+        step.hit[contact] = row.normal_impulse > 0;
+    });
 }
 
 void keep_impulses(const Simulation& simulation, StepData& step, std::size_t island) {
-    const ContactRow* row = rows_of(step, island).data();
-    for (const std::uint32_t contact : contacts_of(step, island)) {
-        step.impulses[contact] = contact_impulse(row->normal_impulse, row->tangent_impulse);
+    for_each_row(step, island, [&](const ContactRow& row, std::size_t contact) {
+        step.impulses[contact] = contact_impulse(row.normal_impulse, row.tangent_impulse);
         if (simulation.needs.rolling)
-            step.angular_impulses[contact] = angular_impulse_of(*row, rolling_row_of(step, *row));
-        ++row;
-    }
+            step.angular_impulses[contact] = angular_impulse_of(row, rolling_row_of(step, row));
+    });
 }
 
 /// From the rows' impulses to those of the load.
 void take_push_back(const Simulation& simulation, StepData& step, std::size_t island) {
-    const ContactRow* row = rows_of(step, island).data();
-    for (const std::uint32_t contact : contacts_of(step, island)) {
+    for_each_row(step, island, [&](const ContactRow& row, std::size_t contact) {
         const ContactImpulse& load = step.impulses[contact];
-        const Vec4 back = (load.normal - row->normal_impulse) * row->normal +
-                          (load.tangent() - row->tangent_impulse);
+        const Vec4 back = (load.normal - row.normal_impulse) * row.normal +
+                          (load.tangent() - row.tangent_impulse);
         if (simulation.needs.turning)
-            apply_impulse<true>(simulation, step, *row, back);
+            apply_impulse<true>(simulation, step, row, back);
         else
-            apply_impulse<false>(simulation, step, *row, back);
+            apply_impulse<false>(simulation, step, row, back);
         if (simulation.needs.rolling)
-            apply_angular_impulse(simulation, step, row->a, row->b,
+            apply_angular_impulse(simulation, step, row.a, row.b,
                                   step.angular_impulses[contact] -
-                                      angular_impulse_of(*row, rolling_row_of(step, *row)));
-        ++row;
-    }
+                                      angular_impulse_of(row, rolling_row_of(step, row)));
+    });
 }
 
 /// The rows without their impulses and without friction.

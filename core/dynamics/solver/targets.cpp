@@ -117,24 +117,19 @@ ContactTargets PairTargets::of_overlap(double s) const {
 
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
     if (simulation.settings.solver != Solver::kImpulse || !step.islands.held[island]) return false;
-    const Range places = step.islands.places(island);
-    for (std::size_t place = places.begin; place < places.end;) {
-        const ContactList::Run run =
-            step.contacts.run(step.islands.contacts[place], step.contacts.size());
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
         const double deep = -slop_of(simulation, run.a, run.b);
         for (std::size_t i = run.begin; i < run.end; ++i)
             if (step.contacts.separation(i) < deep) return true;
-        place += run.size();
     }
     return false;
 }
 
 Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island) {
     Overlap overlap;
-    const Range places = step.islands.places(island);
-    for (std::size_t place = places.begin; place < places.end;) {
-        const ContactList::Run run =
-            step.contacts.run(step.islands.contacts[place], step.contacts.size());
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
         double deepest = 0;
         for (std::size_t i = run.begin; i < run.end; ++i)
             deepest = std::max(deepest, -step.contacts.separation(i));
@@ -145,7 +140,6 @@ Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size
             overlap.weight += depth * std::abs(normal.dot(simulation.settings.gravity)) *
                               (mass_of(simulation, run.a) + mass_of(simulation, run.b));
         }
-        place += run.size();
     }
     return overlap;
 }

@@ -47,7 +47,8 @@ class ChunkedList {
     void for_each_wave(const Loop& for_each_range, std::size_t count, std::size_t grain,
                        const Fill& fill, const Append& append) {
         const std::size_t chunks = (count + grain - 1) / grain;
-        const std::size_t wave = std::max(kChunks, (chunks + kWaves - 1) / kWaves);
+        const std::size_t wave =
+            std::max({kChunks, kItems / grain, (chunks + kWaves - 1) / kWaves});
         if (lists_.size() < std::min(chunks, wave)) lists_.resize(std::min(chunks, wave));
         for (std::size_t first = 0; first < chunks; first += wave) {
             const std::size_t begin = first * grain;
@@ -60,10 +61,14 @@ class ChunkedList {
         }
     }
 
+    /// Gives its memory back.
+    void release() { std::vector<std::vector<Item>>().swap(lists_); }
+
   private:
-    /// Ranges that are filled at once, at least, and how often it is done, about: more waves take
-    /// less memory, and threads wait for each other at the end of each.
-    static constexpr std::size_t kChunks = 8, kWaves = 8;
+    /// Ranges and items of the input that are worked on at once, at least, and how often it is
+    /// done, about: more waves take less memory, and threads wait for each other at the end of
+    /// each.
+    static constexpr std::size_t kChunks = 8, kItems = 4096, kWaves = 32;
 
     std::vector<std::vector<Item>> lists_;
     std::vector<std::size_t> begin_;  ///< of each list in `all`, and the end

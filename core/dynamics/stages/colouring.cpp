@@ -24,24 +24,8 @@ bool is_round(const TypeProperties& type) {
     return !type.movable || (type.arm == 0 && type.isotropic);
 }
 
-/// How many contacts from this one on have its bodies and its normal.
-std::uint32_t run_length(const ContactList& contacts, std::size_t begin) {
-    const std::size_t most = std::min(contacts.size(), begin + kManifoldPoints);
-    const ContactList::Run first = contacts.run(begin, most);
-    std::size_t end = first.end;
-    // The next run's normal may be the same but for the sign of a zero.
-    while (end < most) {
-        const ContactList::Run next = contacts.run(end, most);
-        if (next.a != first.a || next.b != first.b ||
-            contacts.normal(end) != contacts.normal(begin))
-            break;
-        end = next.end;
-    }
-    return static_cast<std::uint32_t>(end - begin);
-}
-
-template <std::size_t kTangents>
-void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents>& impulses) {
+template <std::size_t kTangents, class Lanes>
+void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents, Lanes>& impulses) {
     resize_anew(impulses.normal, rows);
     resize_anew(impulses.tangent, friction ? rows : 0);
 }
@@ -55,10 +39,10 @@ void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
     resize_anew(coloured.body_sums, coloured.bodies.size());
-    for (auto* const list : {&coloured.last_round, &coloured.round_direction})
-        size_impulses(coloured.round.size(), coloured.friction, *list);
-    for (auto* const list : {&coloured.last_general, &coloured.general_direction})
-        size_impulses(coloured.general_rows, coloured.friction, *list);
+    size_impulses(coloured.round.size(), coloured.friction, coloured.last_round);
+    size_impulses(coloured.round.size(), coloured.friction, coloured.round_direction);
+    size_impulses(coloured.general_rows, coloured.friction, coloured.last_general);
+    size_impulses(coloured.general_rows, coloured.friction, coloured.general_direction);
     resize_anew(coloured.round_work, coloured.round.size());
     resize_anew(coloured.general_work, coloured.general.size());
 }
@@ -169,24 +153,27 @@ std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, 
 
 void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
     pairs_.clear();
-    const Range places = step.islands.places(island);
-    for (std::size_t i = places.begin; i < places.end;) {
-        const std::uint32_t contact = step.islands.contacts[i];
-        const Contact c = step.contacts[contact];
-        Pair pair;
-        pair.contact = contact;
-        pair.a = place_of(simulation, step, c.a);
-        pair.b = place_of(simulation, step, c.b);
-        const std::uint32_t points = run_length(step.contacts, contact);
-        const bool round =
-            points == 1 && is_round(simulation.type_of(c.a)) && is_round(simulation.type_of(c.b));
-        pair.points = static_cast<std::uint8_t>(points);
-        used_.resize(step.coloured.bodies.size(), 0);
-        const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
-        pair.bucket = static_cast<std::uint16_t>(colour_of(pair) * kKinds + kind);
-        pairs_.push_back(pair);
-        i += points;
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        for (std::size_t begin = run.begin; begin < run.end; begin += kManifoldPoints)
+            add_pair(simulation, step, run, {begin, std::min(run.end, begin + kManifoldPoints)});
     }
+}
+
+void Colouring::add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
+                         Range contacts) {
+    Pair pair;
+    pair.contact = static_cast<std::uint32_t>(contacts.begin);
+    pair.a = place_of(simulation, step, run.a);
+    pair.b = place_of(simulation, step, run.b);
+    const std::size_t points = contacts.end - contacts.begin;
+    const bool round =
+        points == 1 && is_round(simulation.type_of(run.a)) && is_round(simulation.type_of(run.b));
+    pair.points = static_cast<std::uint8_t>(points);
+    used_.resize(step.coloured.bodies.size(), 0);
+    const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
+    pair.bucket = static_cast<std::uint16_t>(colour_of(pair) * kKinds + kind);
+    pairs_.push_back(pair);
 }
 
 /// The first that none of its movable bodies has yet; kColours if all are taken.

@@ -31,6 +31,8 @@ class Colouring {
         std::uint8_t points;
     };
     void list_pairs(const Simulation& simulation, StepData& step, std::size_t island);
+    void add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
+                  Range contacts);
     std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
     int colour_of(const Pair& pair);
     BatchRange add_batches(Range pairs, std::uint32_t& rows, std::vector<Batch>& batches) const;

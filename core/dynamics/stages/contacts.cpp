@@ -43,27 +43,32 @@ void begin_contacts(const Simulation& simulation, StepData& step) {
 
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts) {
     if (contacts.begin == contacts.end) return;
-    const std::vector<KeptImpulse>& last = last_impulses(simulation, step);
+    const KeptImpulses& last = last_impulses(simulation, step);
     const std::vector<Bivector>& angular = last_angular_impulses(simulation, step);
     TSR_ASSERT(!simulation.needs.rolling || angular.size() == last.size());
-    auto old = std::lower_bound(
-        last.begin(), last.end(), step.contacts[contacts.begin],
-        [](const KeptImpulse& i, const Contact& c) { return key_of(i) < key_of(c); });
+    const auto bodies_of = [](const KeptImpulses::Run& run) { return BodyPair{run.a, run.b}; };
+    const auto [a, b] = step.contacts.pair(contacts.begin);
+    auto old = std::partition_point(last.runs().begin(), last.runs().end(),
+                                    [&](const KeptImpulses::Run& run) {
+                                        return bodies_of(run) < BodyPair{a, b};
+                                    });
     for (std::size_t begin = contacts.begin; begin < contacts.end;) {
         const ContactList::Run run = step.contacts.run(begin, contacts.end);
         const BodyPair pair = {run.a, run.b};
-        const auto is_of_pair = [&] {
-            return old != last.end() && BodyPair{old->a, old->b} == pair;
-        };
-        while (old != last.end() && BodyPair{old->a, old->b} < pair) ++old;
+        while (old != last.runs().end() && bodies_of(*old) < pair) ++old;
+        // All of the pair: [place, end).
+        std::size_t place = 0, end = 0;
+        for (auto of = old; of != last.runs().end() && bodies_of(*of) == pair; ++of) {
+            if (of == old) place = of->first;
+            end = last.end_of(static_cast<std::size_t>(of - last.runs().begin()));
+        }
         for (std::size_t i = run.begin; i < run.end; ++i) {
             const std::uint32_t feature = step.contacts.feature(i);
-            while (is_of_pair() && old->feature < feature) ++old;
-            const bool known = is_of_pair() && old->feature == feature;
-            step.impulses[i] = known ? ContactImpulse(*old) : ContactImpulse{};
-            if (!simulation.needs.rolling) continue;
-            step.angular_impulses[i] =
-                known ? angular[static_cast<std::size_t>(old - last.begin())] : Bivector{};
+            while (place < end && last.feature(place) < feature) ++place;
+            const bool known = place < end && last.feature(place) == feature;
+            step.impulses[i] = known ? last.impulse(place) : ContactImpulse{};
+            if (simulation.needs.rolling)
+                step.angular_impulses[i] = known ? angular[place] : Bivector{};
         }
         begin = run.end;
     }

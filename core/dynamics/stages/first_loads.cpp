@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <tuple>
+
+#include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
 namespace {
@@ -32,6 +35,8 @@ void FirstLoads::guess(const Simulation& simulation, StepData& step, Schedule& s
     if (simulation.settings.gravity.isZero(0) || !look(simulation, step, schedule)) return;
     list_supports(simulation, step);
     if (!supports_.empty()) share_out(simulation, step);
+    // Most steps have few.
+    release(supports_), release(above_);
 }
 
 /// Whether there is any body that stands on something and of which nothing is recalled.
@@ -83,6 +88,16 @@ void FirstLoads::list_supports(const Simulation& simulation, const StepData& ste
     });
 }
 
+void FirstLoads::number_loads(const Simulation& simulation) {
+    const auto of_others = std::numeric_limits<std::uint32_t>::max();
+    load_.assign(simulation.bodies.size(), of_others);
+    std::uint32_t count = 0;
+    for (const Support& s : supports_)
+        if (load_[s.upper] == of_others) load_[s.upper] = count++;
+    std::replace(load_.begin(), load_.end(), of_others, count);
+    above_.assign(count + std::size_t{1}, {});
+}
+
 void FirstLoads::list_places(const Simulation& simulation, const StepData& step,
                              const Support* begin, const Support* end) {
     const Vec4 up = up_of(simulation);
@@ -102,7 +117,7 @@ void FirstLoads::list_places(const Simulation& simulation, const StepData& step,
 /// load where it acts; where that pulls at a point it has none.
 void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
     using Vec5 = Eigen::Matrix<double, 5, 1>;
-    above_.assign(simulation.bodies.size(), {});
+    number_loads(simulation);
     const Vec4 up = up_of(simulation);
     const double kick = step.h * simulation.settings.gravity.norm();
     for (std::size_t end = supports_.size(); end > 0;) {
@@ -113,7 +128,7 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
         end = begin;
 
         const TypeProperties& type = simulation.type_of(body);
-        const double load = kick * type.mass + above_[body].impulse;
+        const double load = kick * type.mass + above_[load_[body]].impulse;
         // In radii of the body, so that sizes are alike.
         const double unit = 1 / type.radius;
         Eigen::Matrix<double, 5, 5> squares = Eigen::Matrix<double, 5, 5>::Zero();
@@ -124,7 +139,7 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
         };
         for (const Place& place : places_) squares += seen(place) * seen(place).transpose();
         Vec5 all;
-        all << load, unit * above_[body].moment;
+        all << load, unit * above_[load_[body]].moment;
         const Vec5 slope = squares.completeOrthogonalDecomposition().solve(all);
         double carried = 0;
         for (const Place& place : places_)
@@ -136,8 +151,9 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
             const BodyId lower = place.support->lower;
             const double down = impulse * place.support->part;
             const Vec4 between = step.position[body] - step.position[lower];
-            above_[lower].impulse += down;
-            above_[lower].moment += down * (place.from_centre + (between - up.dot(between) * up));
+            Load& above = above_[load_[lower]];
+            above.impulse += down;
+            above.moment += down * (place.from_centre + (between - up.dot(between) * up));
         }
     }
 }

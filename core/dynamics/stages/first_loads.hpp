@@ -31,8 +31,9 @@ class FirstLoads {
 
     /// What weighs on a body.
     struct Load {
-        double impulse = 0;          ///< downward [N s]
-        Vec4 moment = Vec4::Zero();  ///< of it times where it acts, from the body's centre [N m s]
+        double impulse = 0;  ///< downward [N s]
+        PackedVec4 moment =
+            PackedVec4::Zero();  ///< of it times where it acts, from the body's centre [N m s]
     };
     /// A point that carries a body.
     struct Place {
@@ -41,6 +42,7 @@ class FirstLoads {
         Vec4 from_centre;  ///< across the direction of gravity, from the body's [m]
     };
 
+    void number_loads(const Simulation& simulation);
     void list_places(const Simulation& simulation, const StepData& step, const Support* begin,
                      const Support* end);
     bool look(const Simulation& simulation, const StepData& step, Schedule& schedule);
@@ -49,7 +51,8 @@ class FirstLoads {
 
     std::vector<std::uint8_t> known_;  ///< of every body: see first_loads.cpp
     std::vector<Support> supports_;    ///< of those that have a first load, the lowest first
-    std::vector<Load> above_;          ///< of every body: what stands on it
+    std::vector<std::uint32_t> load_;  ///< of every body: which of above_ is its
+    std::vector<Load> above_;          ///< what stands on these, and at last on any others
     std::vector<Place> places_;        ///< of the points that carry a body
 };
 

@@ -27,7 +27,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        const auto size = static_cast<std::uint32_t>(islands.contacts_in(island));
+        const auto size = islands.contacts[island];
         if (fits && size >= (islands.held[island] ? coloured_from_.held : coloured_from_.free)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
@@ -71,18 +71,18 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
 
     Islands& islands = step.islands;
     islands.held.assign(count, 0);
+    islands.contacts.assign(count, 0);
     for (std::size_t i = 0; i < member_.size(); ++i) {
         const ContactList::Run run = contacts.nth_run(i);
-        if (!movable(run.a) || !movable(run.b)) islands.held[number_[member_[i]]] = 1;
+        const std::uint32_t island = number_[member_[i]];
+        if (!movable(run.a) || !movable(run.b)) islands.held[island] = 1;
+        islands.contacts[island] += static_cast<std::uint32_t>(run.size());
     }
-    resize_anew(islands.contacts, contacts.size());
+    resize_anew(islands.runs, member_.size());
     counting_sort(
-        member_.size(), count, [&](std::size_t i) { return number_[member_[i]]; },
-        [&](std::size_t i) { return contacts.nth_run(i).size(); }, islands.first,
+        member_.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,
         [&](std::size_t i, std::size_t place) {
-            const ContactList::Run run = contacts.nth_run(i);
-            std::iota(&islands.contacts[place], &islands.contacts[place] + run.size(),
-                      static_cast<std::uint32_t>(run.begin));
+            islands.runs[place] = static_cast<std::uint32_t>(i);
         });
 }
 

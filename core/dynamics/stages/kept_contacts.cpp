@@ -130,6 +130,7 @@ class KeptContacts {
     void end() {
         for (std::size_t i = count_; i < kept_.size(); ++i) spare_.put(kept_[i]);
         kept_.resize(count_);
+        if (kept_.capacity() > count_ + count_ / 8 + 4) kept_.shrink_to_fit();
     }
 
   private:

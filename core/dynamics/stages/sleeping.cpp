@@ -18,6 +18,12 @@ bool stands_still(const StepData& step, BodyId id) {
     return step.velocity[id] == Vec4::Zero() && step.angular_velocity[id] == Bivector{};
 }
 
+bool pushes(const StepData& step, const ContactList::Run& run) {
+    return std::any_of(step.impulses.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                       step.impulses.begin() + static_cast<std::ptrdiff_t>(run.end),
+                       [](const ContactImpulse& impulse) { return impulse.normal > 0; });
+}
+
 /// step.lowest_of_island: its lowest movable body if it may fall asleep, else kAwake.
 void find_islands_at_rest(const Simulation& simulation, StepData& step) {
     std::vector<BodyId>& lowest = step.lowest_of_island;
@@ -33,16 +39,14 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
             return simulation.memory.still[id] >= kTimeToSleep;
         };
         // Most islands that move show it soon.
-        const std::uint32_t* const first = step.islands.contacts.data();
-        const Range places = step.islands.places(island);
-        if (std::all_of(first + places.begin, first + places.end,
-                        [&](std::uint32_t place) {
-                            const Contact contact = step.contacts[place];
-                            if (step.impulses[place].normal > 0)
-                                is_supported = is_supported ||
-                                               !simulation.type_of(contact.a).movable ||
-                                               !simulation.type_of(contact.b).movable;
-                            return rests(contact.a) && rests(contact.b);
+        const auto runs = step.islands.runs_in(island);
+        if (std::all_of(runs.begin(), runs.end(),
+                        [&](std::uint32_t n) {
+                            const ContactList::Run run = step.contacts.nth_run(n);
+                            if (!simulation.type_of(run.a).movable ||
+                                !simulation.type_of(run.b).movable)
+                                is_supported = is_supported || pushes(step, run);
+                            return rests(run.a) && rests(run.b);
                         }) &&
             (is_supported || all_stand))
             lowest[island] = least;
@@ -100,10 +104,9 @@ void fall_asleep(Simulation& simulation, StepData& step) {
         next[id] = rests ? id : kAwake;
     }
     for (std::size_t island = 0; island < lowest.size(); ++island)
-        for (std::uint32_t i = step.islands.first[island]; i < step.islands.first[island + 1];
-             ++i) {
-            const Contact contact = step.contacts[step.islands.contacts[i]];
-            for (const BodyId id : {contact.a, contact.b})
+        for (const std::uint32_t n : step.islands.runs_in(island)) {
+            const ContactList::Run run = step.contacts.nth_run(n);
+            for (const BodyId id : {run.a, run.b})
                 if (simulation.type_of(id).movable) next[id] = lowest[island];
         }
 

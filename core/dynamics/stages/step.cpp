@@ -112,40 +112,48 @@ LeftImpulses left_impulses(Simulation& simulation, StepData& step) {
     return {simulation.memory.impulses, simulation.memory.angular_impulses};
 }
 
-std::size_t count_pushing(const StepData& step, Range contacts) {
-    std::size_t count = 0;
-    for (std::size_t i = contacts.begin; i < contacts.end; ++i)
-        count += step.impulses[i].normal > 0 ? 1 : 0;
+KeptImpulses::Size count_pushing(const StepData& step, Range contacts) {
+    KeptImpulses::Size count;
+    for (std::size_t begin = contacts.begin; begin < contacts.end;) {
+        const std::size_t end = step.contacts.run(begin, contacts.end).end, before = count.impulses;
+        for (std::size_t i = begin; i < end; ++i)
+            count.impulses += step.impulses[i].normal > 0 ? 1 : 0;
+        count.runs += count.impulses > before ? 1 : 0;
+        begin = end;
+    }
     return count;
 }
 
 void keep_pushing(const Simulation& simulation, const StepData& step, Range contacts,
-                  std::size_t place, const LeftImpulses& left) {
+                  KeptImpulses::Size first, const LeftImpulses& left) {
+    auto [run_place, place] = first;
     for (std::size_t begin = contacts.begin; begin < contacts.end;) {
         const ContactList::Run run = step.contacts.run(begin, contacts.end);
+        const std::size_t before = place;
         for (std::size_t i = run.begin; i < run.end; ++i) {
-            const ContactImpulse& impulse = step.impulses[i];
-            if (!(impulse.normal > 0)) continue;
-            left.impulses[place] = {impulse, run.a, run.b, step.contacts.feature(i)};
+            if (!(step.impulses[i].normal > 0)) continue;
+            left.impulses.put(place, step.impulses[i], step.contacts.feature(i));
             if (simulation.needs.rolling) left.angular[place] = step.angular_impulses[i];
             ++place;
         }
+        if (place > before)
+            left.impulses.put(run_place++,
+                              KeptImpulses::Run{run.a, run.b, static_cast<std::uint32_t>(before)});
         begin = run.end;
     }
 }
 
 void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpulses& left) {
     const bool rolling = simulation.needs.rolling;
-    const std::vector<KeptImpulse>& last = last_impulses(simulation, step);
+    const KeptImpulses& last = last_impulses(simulation, step);
     const std::vector<Bivector>& last_angular = last_angular_impulses(simulation, step);
     const auto sleeps = [&](const KeptImpulse& impulse) {
         return is_asleep(step, impulse.a) || is_asleep(step, impulse.b);
     };
-    const std::size_t count =
-        count_pushing(step, {0, step.impulses.size()}) +
-        static_cast<std::size_t>(std::count_if(last.begin(), last.end(), sleeps));
-    reserve_anew(step.merged_impulses, count);
-    if (rolling) reserve_anew(step.merged_angular, count);
+    KeptImpulses::Size count = count_pushing(step, {0, step.impulses.size()});
+    count.runs += last.runs().size(), count.impulses += last.size();
+    step.merged_impulses.reserve_anew(count);
+    if (rolling) reserve_anew(step.merged_angular, count.impulses);
 
     std::size_t own = 0;
     const auto add_own = [&](const auto& comes_first) {
@@ -155,14 +163,16 @@ void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpu
             if (rolling) step.merged_angular.push_back(step.angular_impulses[own]);
         }
     };
-    for (std::size_t i = 0; i < last.size(); ++i) {
-        if (!sleeps(last[i])) continue;
-        add_own([&](const Contact& c) { return key_of(c) < key_of(last[i]); });
-        step.merged_impulses.push_back(last[i]);
+    std::size_t place = 0;
+    for (const KeptImpulse& impulse : last) {
+        const std::size_t i = place++;
+        if (!sleeps(impulse)) continue;
+        add_own([&](const Contact& c) { return key_of(c) < key_of(impulse); });
+        step.merged_impulses.push_back(impulse);
         if (rolling) step.merged_angular.push_back(last_angular[i]);
     }
     add_own([](const Contact&) { return true; });
-    left.impulses.swap(step.merged_impulses);
+    std::swap(left.impulses, step.merged_impulses);
     left.angular.swap(step.merged_angular);
 }
 

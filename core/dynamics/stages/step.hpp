@@ -31,16 +31,16 @@ void require_finite(const Simulation& simulation, const StepData& step);
 /// The impulses that the sub-step leaves to the next, or the step if it is its last, are those of
 /// step.impulses that are > 0, ascending, and of bodies that sleep the last ones.
 struct LeftImpulses {
-    std::vector<KeptImpulse>& impulses;
+    KeptImpulses& impulses;
     std::vector<Bivector>& angular;  ///< where there is rolling friction
 };
 LeftImpulses left_impulses(Simulation& simulation, StepData& step);
 
-/// How many of step.impulses in the range are > 0.
-std::size_t count_pushing(const StepData& step, Range contacts);
-/// Writes these to the places from `place` on.
+/// How many of step.impulses in the range are > 0, and how many runs of contacts have any there.
+KeptImpulses::Size count_pushing(const StepData& step, Range contacts);
+/// Writes these to the places from `first` on.
 void keep_pushing(const Simulation& simulation, const StepData& step, Range contacts,
-                  std::size_t place, const LeftImpulses& left);
+                  KeptImpulses::Size first, const LeftImpulses& left);
 /// All of them, beside those of bodies that sleep: where sleeping is on.
 void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpulses& left);
 

@@ -81,10 +81,10 @@ struct NormalRelax {
 
 /// Impulses on b of rows with so many tangents, but for rolling: along the normal, and across it
 /// if there is friction.
-template <std::size_t kTangents>
+template <std::size_t kTangents, class Lanes = Eight>
 struct RowImpulses {
-    std::vector<Eight> normal;
-    std::vector<std::array<Eight, kTangents>> tangent;
+    std::vector<Lanes> normal;
+    std::vector<std::array<Lanes, kTangents>> tangent;
 };
 
 /// A contact of two round bodies (or of one and a body that contacts do not move): the normal goes
@@ -180,9 +180,11 @@ struct ColouredIslands {
     // with, x, and the direction, p.
     std::vector<PackedChange> last_changes, direction;
     std::vector<std::array<double, 3>> body_sums;  ///< of `bodies`: items of sums
-    RowImpulses<4> last_round, round_direction;
-    RowImpulses<3> last_general, general_direction;
-    std::vector<std::array<Eight, 3>> round_work, general_work;  ///< likewise of each batch
+    RowImpulses<4> last_round;
+    RowImpulses<3> last_general;
+    RowImpulses<4, RoughEight> round_direction;
+    RowImpulses<3, RoughEight> general_direction;
+    std::vector<std::array<Eight, 2>> round_work, general_work;  ///< likewise of each batch
     // Of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions

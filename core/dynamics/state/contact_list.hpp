@@ -1,9 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,7 +15,8 @@
 namespace tesserae {
 
 /// Contacts in the order in which they are added. What the points of two bodies share is there
-/// once: a point takes half of a Contact. They are read as such, by value.
+/// once, and all but the first of them are seen from it, in float: rounding moves them by 6e-8 of
+/// how far apart they are. They are read as Contacts, by value.
 class ContactList {
   public:
     class Iterator {
@@ -60,15 +62,14 @@ class ContactList {
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     Contact operator[](std::size_t i) const {
-        const Point& point = points_[i];
-        const Shared& shared = shared_[point.shared];
-        return {shared.normal, point.place,   point.separation, shared.a,
-                shared.b,      point.feature, shared.no_seam,   shared.no_seam_points};
+        const Shared& shared = shared_of(i);
+        return {shared.normal, point(i),   separation(i),  shared.a,
+                shared.b,      feature(i), shared.no_seam, shared.no_seam_points};
     }
     /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
     /// little of each point go from run to run.
     Run run(std::size_t i, std::size_t limit) const {
-        const std::uint32_t place = points_[i].shared;
+        const std::uint32_t place = place_of_shared_[i];
         const Shared& shared = shared_[place];
         const std::size_t end = place + 1 < shared_size_ ? shared_[place + 1].first : size_;
         return {i, std::min(end, limit), shared.a, shared.b};
@@ -83,37 +84,49 @@ class ContactList {
         while (end < size_ && pair(end) == pair(i));
         return end;
     }
-    std::pair<BodyId, BodyId> pair(std::size_t i) const {
-        const Shared& shared = shared_[points_[i].shared];
-        return {shared.a, shared.b};
-    }
+    std::pair<BodyId, BodyId> pair(std::size_t i) const { return {shared_of(i).a, shared_of(i).b}; }
     /// The pair's Contact::no_seam, if contacts [begin, end) are all the points that it is of.
     unsigned no_seam(std::size_t begin, std::size_t end) const {
-        const Shared& shared = shared_[points_[begin].shared];
+        const Shared& shared = shared_of(begin);
         return shared.no_seam_points == end - begin ? shared.no_seam : 0u;
     }
-    const PackedVec4& normal(std::size_t i) const { return shared_[points_[i].shared].normal; }
-    const PackedVec4& point(std::size_t i) const { return points_[i].place; }
-    double separation(std::size_t i) const { return points_[i].separation; }
-    std::uint32_t feature(std::size_t i) const { return points_[i].feature; }
+    const PackedVec4& normal(std::size_t i) const { return shared_of(i).normal; }
+    Vec4 point(std::size_t i) const {
+        const Shared& shared = shared_of(i);
+        if (shared.first == i) return shared.place;
+        const auto& [x, y, z, w] = further_[further_at(i)].from_first;
+        return shared.place + assembled(x, y, z, w);
+    }
+    double separation(std::size_t i) const {
+        const Shared& shared = shared_of(i);
+        if (shared.first == i) return shared.separation;
+        return std::bit_cast<double>(further_[further_at(i)].separation);
+    }
+    std::uint32_t feature(std::size_t i) const {
+        const Shared& shared = shared_of(i);
+        return shared.first == i ? shared.feature : further_[further_at(i)].feature;
+    }
     Part part(std::size_t begin, std::size_t end) const { return {{*this, begin}, {*this, end}}; }
     Iterator begin() const { return {*this, 0}; }
     Iterator end() const { return {*this, size_}; }
 
     /// Empties it, with memory for about as many contacts as there were.
     void restart() {
-        prepare(points_, size_);
+        prepare(place_of_shared_, size_);
         prepare(shared_, shared_size_);
+        prepare(further_, size_ - shared_size_);
         size_ = shared_size_ = 0;
     }
     void push_back(const Contact& contact) {
-        if (points_.size() == size_) points_.emplace_back();
+        if (place_of_shared_.size() == size_) place_of_shared_.emplace_back();
         const bool is_shared = size_ > 0 && share(contact, (*this)[size_ - 1]);
-        if (!is_shared) {
+        if (is_shared) {
+            if (further_.size() == size_ - shared_size_) further_.emplace_back();
+        } else {
             if (shared_.size() == shared_size_) shared_.emplace_back();
-            shared_[shared_size_++] = shared_of(contact, size_);
+            ++shared_size_;
         }
-        write(contact, size_++, shared_size_ - 1);
+        write(contact, {size_++, shared_size_ - 1}, !is_shared);
     }
     /// Adds lists one behind the other, of which no two have contacts of the same two bodies.
     /// @param for_each_range   (count, grain, work): as that of Schedule
@@ -130,8 +143,7 @@ class ContactList {
             starts_[i].point += starts_[i - 1].point;
             starts_[i].shared += starts_[i - 1].shared;
         }
-        grow(points_, size_, starts_.back().point, ratio);
-        grow(shared_, shared_size_, starts_.back().shared, ratio);
+        grow_to(starts_.back(), ratio);
         for_each_range(lists.size(), 1, [&](auto range) {
             for (std::size_t i = range.begin; i < range.end; ++i) write(lists[i], starts_[i]);
         });
@@ -152,30 +164,39 @@ class ContactList {
             by.shared += shared_by(contacts) - (shared_at(end) - shared_at(begin));
             moves_.push_back({{end, shared_at(end)}, {next, shared_at(next)}, by});
         }
-        grow(points_, size_, size_ + by.point, 1);
-        grow(shared_, shared_size_, shared_size_ + by.shared, 1);
+        grow_to({size_ + by.point, shared_size_ + by.shared}, 1);
         size_ += by.point;
         shared_size_ += by.shared;
-        move(points_, &Start::point,
-             [](Point& point, const Start& way) { point.shared += place_of(way.shared); });
-        move(shared_, &Start::shared,
-             [](Shared& shared, const Start& way) { shared.first += place_of(way.point); });
+        move(
+            place_of_shared_, [](const Start& start) { return start.point; },
+            [](std::uint32_t& place, const Start& way) { place += place_of(way.shared); });
+        move(
+            shared_, [](const Start& start) { return start.shared; },
+            [](Shared& shared, const Start& way) { shared.first += place_of(way.point); });
+        move(
+            further_, [](const Start& start) { return start.point - start.shared; },
+            [](Further&, const Start&) {});
         for (std::size_t i = 0; i < all.size(); ++i) write(all[i].by, starts_[i]);
     }
 
   private:
-    struct Point {
-        PackedVec4 place;
-        double separation;
-        std::uint32_t feature, shared;
-    };
     struct Shared {
         PackedVec4 normal;
+        PackedVec4 place;  ///< of the first point, with:
+        double separation;
+        std::uint32_t feature;
         BodyId a, b;
-        std::uint32_t first;  ///< of the points
+        std::uint32_t first;  ///< its place
         std::uint8_t no_seam, no_seam_points;
     };
-    /// Places of a list's first contact and of what it shares.
+    /// A point that is not the first.
+    struct Further {
+        std::array<float, 4> from_first;          ///< [m]
+        std::array<std::uint32_t, 2> separation;  ///< a double's bits, which need no alignment here
+        std::uint32_t feature;
+    };
+    /// Places of a list's first contact and of what it shares. That of the first further point is
+    /// their difference.
     struct Start {
         std::size_t point, shared;
     };
@@ -187,35 +208,41 @@ class ContactList {
 
     /// What goes down does so from the first to the last, what goes up the other way round: nothing
     /// is written over that has still to move.
-    template <class Item, class Mend>
-    void move(std::vector<Item>& items, std::size_t Start::*place, const Mend& mend) {
+    /// @param place_in   of a Start in `items`
+    template <class Item, class PlaceIn, class Mend>
+    void move(std::vector<Item>& items, const PlaceIn& place_in, const Mend& mend) {
         const auto move_one = [&](const Move& m, std::size_t i) {
             Item item = items[i];
             mend(item, m.way);
-            items[i + m.way.*place] = item;
+            items[i + place_in(m.way)] = item;
         };
         const auto goes_up = [&](const Move& m) {
-            return static_cast<std::ptrdiff_t>(m.way.*place) > 0;
+            return static_cast<std::ptrdiff_t>(place_in(m.way)) > 0;
         };
         for (const Move& m : moves_)
-            for (std::size_t i = m.begin.*place; !goes_up(m) && i < m.end.*place; ++i)
+            for (std::size_t i = place_in(m.begin); !goes_up(m) && i < place_in(m.end); ++i)
                 move_one(m, i);
         for (auto m = moves_.rbegin(); m != moves_.rend(); ++m)
-            for (std::size_t i = m->end.*place; goes_up(*m) && i-- > m->begin.*place;)
+            for (std::size_t i = place_in(m->end); goes_up(*m) && i-- > place_in(m->begin);)
                 move_one(*m, i);
+    }
+
+    const Shared& shared_of(std::size_t i) const { return shared_[place_of_shared_[i]]; }
+    /// Place of a point that is not the first: so many come before it, less the first ones.
+    std::size_t further_at(std::size_t i) const { return i - place_of_shared_[i] - 1; }
+    void grow_to(Start end, double ratio) {
+        grow(place_of_shared_, size_, end.point, ratio);
+        grow(shared_, shared_size_, end.shared, ratio);
+        grow(further_, size_ - shared_size_, end.point - end.shared, ratio);
     }
 
     /// Place of what a contact shares; also of the end.
     std::size_t shared_at(std::size_t i) const {
-        return i < size_ ? points_[i].shared : shared_size_;
+        return i < size_ ? place_of_shared_[i] : shared_size_;
     }
     static std::uint32_t place_of(std::size_t i) { return static_cast<std::uint32_t>(i); }
-    static Shared shared_of(const Contact& c, std::size_t first) {
-        return {c.normal, c.a, c.b, place_of(first), c.no_seam, c.no_seam_points};
-    }
     static bool share(const Contact& c, const Contact& d) {
-        return c.a == d.a && c.b == d.b &&
-               std::memcmp(c.normal.data(), d.normal.data(), 4 * sizeof(double)) == 0;
+        return c.a == d.a && c.b == d.b && c.normal == d.normal;
     }
     static std::size_t shared_by(std::span<const Contact> list) {
         std::size_t count = list.empty() ? 0 : 1;
@@ -224,21 +251,31 @@ class ContactList {
     }
     void write(std::span<const Contact> list, Start start) {
         for (std::size_t i = 0; i < list.size(); ++i) {
-            const Contact& c = list[i];
-            const bool is_shared = i > 0 && share(list[i - 1], c);
-            if (i > 0 && !is_shared) ++start.shared;
-            write(c, start.point + i, start.shared);
-            if (!is_shared) shared_[start.shared] = shared_of(c, start.point + i);
+            const bool is_first = i == 0 || !share(list[i - 1], list[i]);
+            if (i > 0 && is_first) ++start.shared;
+            write(list[i], {start.point + i, start.shared}, is_first);
         }
     }
-    void write(const Contact& c, std::size_t place, std::size_t shared) {
-        points_[place] = {c.point, c.separation, c.feature, place_of(shared)};
+    void write(const Contact& c, Start at, bool is_first) {
+        place_of_shared_[at.point] = place_of(at.shared);
+        Shared& shared = shared_[at.shared];
+        if (is_first) {
+            shared = {c.normal,           c.point,   c.separation,    c.feature, c.a, c.b,
+                      place_of(at.point), c.no_seam, c.no_seam_points};
+            return;
+        }
+        Further& further = further_[further_at(at.point)];
+        Eigen::Map<Eigen::Vector4f>(further.from_first.data()) =
+            (c.point - shared.place).cast<float>();
+        further.separation = std::bit_cast<std::array<std::uint32_t, 2>>(c.separation);
+        further.feature = c.feature;
     }
 
     // Those that are used come first. What lies behind them stays, to be written over.
     std::size_t size_ = 0, shared_size_ = 0;
-    std::vector<Point> points_;
+    std::vector<std::uint32_t> place_of_shared_;  ///< of every contact
     std::vector<Shared> shared_;
+    std::vector<Further> further_;
     std::vector<Start> starts_;
     std::vector<Move> moves_;
 };

@@ -10,31 +10,9 @@
 #include "core/algebra/rotor.hpp"
 #include "core/contact/manifold.hpp"
 #include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/state/kept_impulses.hpp"
 
 namespace tesserae {
-
-/// What a contact point's rows start from, and what they end with, on b. There is one of every
-/// point in memory twice: friction is in float, as a part of the normal impulse, whose range it
-/// has.
-struct ContactImpulse {
-    double normal = 0;                ///< [N s], >= 0
-    std::array<float, 4> slope = {};  ///< friction impulse over the normal one, world
-
-    Vec4 tangent() const { return normal * assembled(slope[0], slope[1], slope[2], slope[3]); }
-};
-/// @param tangent   [N s], zero where the normal impulse is
-inline ContactImpulse contact_impulse(double normal, const Vec4& tangent) {
-    ContactImpulse impulse{normal};
-    if (!(normal > 0)) return impulse;
-    Eigen::Map<Eigen::Vector4f>(impulse.slope.data()) = (tangent / normal).cast<float>();
-    return impulse;
-}
-
-/// What a contact point's rows ended with, > 0: where the next step's solver starts.
-struct KeptImpulse : ContactImpulse {
-    BodyId a = 0, b = 0;        ///< a < b
-    std::uint32_t feature = 0;  ///< which point of the pair; stays the same while the features do
-};
 
 struct KeptPoint {
     std::array<float, 4> on_a;  ///< on a's surface, from the smaller body's centre, in a's axes [m]
@@ -64,7 +42,7 @@ using KeptManifolds = std::vector<std::shared_ptr<const KeptManifold>>;
 /// Everything beside the bodies' state that one step leaves to the next and that changes results.
 /// Saved with a trajectory so that a resumed run continues bit for bit.
 struct StepMemory {
-    std::vector<KeptImpulse> impulses;  ///< ascending (a, b, feature)
+    KeptImpulses impulses;
     /// Of each of `impulses` what held rolling and twisting, on b, world [N m s]; empty where there
     /// is no rolling friction.
     std::vector<Bivector> angular_impulses;

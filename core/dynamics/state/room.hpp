@@ -32,6 +32,13 @@ void resize_anew(std::vector<Item>& list, std::size_t size) {
     list.resize(size);
 }
 
+/// Gives the memory back of a list that is seldom as long, unless it has little.
+template <class Item>
+void release(std::vector<Item>& list) {
+    list.clear();
+    if (list.capacity() > kLeastIdle / sizeof(Item)) std::vector<Item>().swap(list);
+}
+
 /// Before a list is filled anew with about as many items as it had: memory for these. What they
 /// were may be lost.
 template <class Item>

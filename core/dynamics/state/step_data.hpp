@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -24,8 +25,8 @@ struct Range {
 
 /// The ball that holds all that a body can reach in the rest of the step.
 struct Bounds {
-    Vec4 centre =
-        Vec4::Zero();   ///< where the body is when they are made, world [m]; 0 if unbounded
+    /// Where the body is when they are made, world [m]; 0 if unbounded.
+    PackedVec4 centre = PackedVec4::Zero();
     double radius = 0;  ///< [m]; infinite if unbounded
 };
 
@@ -37,8 +38,8 @@ struct BodyPair {
 };
 
 /// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
-/// has contacts[first[k]] to contacts[first[k + 1]], in the order in which they are solved. All of
-/// a run are in one island.
+/// has the runs of contacts runs[first[k]] to runs[first[k + 1]], in the order in which they are
+/// solved.
 ///
 /// They are in ascending order of (a, b, feature), and the contacts of small islands are solved in
 /// it, one by one. Large ones are coloured and solved in order of the batches that ColouredIslands
@@ -47,15 +48,17 @@ struct Islands {
     static constexpr std::uint32_t kNotColoured = std::numeric_limits<std::uint32_t>::max();
 
     std::vector<std::uint32_t> first = {0};
-    std::vector<std::uint32_t> contacts;   ///< places in the list of contacts
+    std::vector<std::uint32_t> runs;       ///< their numbers in the list of contacts
+    std::vector<std::uint32_t> contacts;   ///< how many each island has
     std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
                                            ///< kNotColoured
     std::vector<std::uint8_t> held;        ///< each island's: contacts do not move some body
     std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }
-    Range places(std::size_t island) const { return {first[island], first[island + 1]}; }
-    std::size_t contacts_in(std::size_t island) const { return first[island + 1] - first[island]; }
+    std::span<const std::uint32_t> runs_in(std::size_t island) const {
+        return std::span(runs).subspan(first[island], first[island + 1] - first[island]);
+    }
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 
@@ -152,12 +155,13 @@ struct StepData {
     std::vector<BodyPair> pairs;  ///< ascending
     ContactList contacts;         ///< ascending (a, b, feature)
     Islands islands;
+    bool rows_in_use = false;              ///< from their islands' building to the sub-step's end
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
     std::vector<RollingRow> rolling_rows;  ///< of `rows`, where there is rolling friction
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
-    std::vector<KeptImpulse> recalled;     ///< what a sub-step leaves to the next of the step
+    KeptImpulses recalled;                 ///< what a sub-step leaves to the next of the step
     /// Of `impulses` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
@@ -167,7 +171,7 @@ struct StepData {
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
 
     /// Made and used within one stage; here so that their memory is kept.
-    std::vector<KeptImpulse> merged_impulses;
+    KeptImpulses merged_impulses;
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
@@ -176,6 +180,13 @@ struct StepData {
     std::vector<std::uint32_t> filled;    ///< which of the lists kept before have something
 };
 
+/// Gives their memory back, if they are not in use.
+inline void release_rows(StepData& step) {
+    step.coloured = {};
+    std::vector<ContactRow>().swap(step.rows);
+    std::vector<RollingRow>().swap(step.rolling_rows);
+}
+
 /// Contacts and their impulses are in ascending order of this.
 template <class ContactOrImpulse>
 auto key_of(const ContactOrImpulse& c) {
@@ -183,8 +194,7 @@ auto key_of(const ContactOrImpulse& c) {
 }
 
 /// What the sub-step before this one left.
-inline const std::vector<KeptImpulse>& last_impulses(const Simulation& simulation,
-                                                     const StepData& step) {
+inline const KeptImpulses& last_impulses(const Simulation& simulation, const StepData& step) {
     return step.substep == 0 ? simulation.memory.impulses : step.recalled;
 }
 

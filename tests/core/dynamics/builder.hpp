@@ -207,7 +207,7 @@ inline bool same_values(const StepMemory& a, const StepMemory& b) {
     if (a.time != b.time || a.asleep != b.asleep || a.still != b.still) return false;
     if (a.impulses.size() != b.impulses.size()) return false;
     for (std::size_t i = 0; i < a.impulses.size(); ++i) {
-        const KeptImpulse &p = a.impulses[i], &q = b.impulses[i];
+        const KeptImpulse p = a.impulses[i], q = b.impulses[i];
         if (p.a != q.a || p.b != q.b || p.feature != q.feature || p.normal != q.normal ||
             p.slope != q.slope || !(angular_impulse(a, i) == angular_impulse(b, i)))
             return false;

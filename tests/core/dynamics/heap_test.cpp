@@ -73,12 +73,13 @@ TEST(Memory, AscendsByPair) {
     const auto& impulses = world.memory().impulses;
     ASSERT_GT(impulses.size(), 50u);
     for (std::size_t i = 0; i < impulses.size(); ++i) {
-        const KeptImpulse& p = impulses[i];
+        const KeptImpulse p = impulses[i];
         EXPECT_LT(p.a, p.b);
         EXPECT_GT(p.normal, 0);
         EXPECT_LE(p.tangent().norm(), 0.5 * p.normal * (1 + 1e-6));  // mu = 0.5, in float
         if (i > 0) {
-            EXPECT_LT(std::tie(impulses[i - 1].a, impulses[i - 1].b), std::tie(p.a, p.b));
+            const KeptImpulse last = impulses[i - 1];
+            EXPECT_LT(std::tie(last.a, last.b), std::tie(p.a, p.b));
         }
     }
 }

@@ -118,7 +118,7 @@ TEST(FirstLoads, AreGuessedOnce) {
     std::mt19937_64 random(2);
     World world(leaning_tower(random, 0.02), {});
     world.step(kStep);
-    const std::vector<KeptImpulse> left = world.memory().impulses;
+    const KeptImpulses left = world.memory().impulses;
     StageCopy copy(Stage::kBuildIslands);
     world.observe(&copy);
     world.step(kStep);

@@ -68,9 +68,14 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
         ASSERT_EQ(step.islands.size(), expected.size());
         std::size_t island = 0;
         for (const auto& [lowest, list] : expected) {
-            const auto begin = step.islands.contacts.begin() + step.islands.first[island];
-            const auto end = step.islands.contacts.begin() + step.islands.first[island + 1];
-            EXPECT_EQ(std::vector<std::uint32_t>(begin, end), list) << "round " << round;
+            std::vector<std::uint32_t> found;
+            for (const std::uint32_t n : step.islands.runs_in(island)) {
+                const ContactList::Run run = step.contacts.nth_run(n);
+                for (std::size_t i = run.begin; i < run.end; ++i)
+                    found.push_back(static_cast<std::uint32_t>(i));
+            }
+            EXPECT_EQ(found, list) << "round " << round;
+            EXPECT_EQ(step.islands.contacts[island], list.size()) << "round " << round;
             ++island;
         }
     }
