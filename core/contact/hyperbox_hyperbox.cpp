@@ -26,7 +26,9 @@ void find_under_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, doubl
 bool meet_at_cell(const BoxPair& pair, const CellAxis& axis, bool of_b, double separation,
                   const Vec4& best, double margin, BoxPoints& points) {
     const Vec4 normal = of_b ? normal_b(pair, axis) : normal_a(pair, axis);
-    if (axis.gap < separation - cell_bias(pair) && normal.dot(best) < kLeaning) return false;
+    const bool sunk = separation < -kBoxSunk / kCellBias * cell_bias(pair);
+    const double leaning = sunk ? kSunkLeaning : kLeaning;
+    if (axis.gap < separation - cell_bias(pair) && normal.dot(best) < leaning) return false;
     find_under_cell(pair, axis, of_b, margin, points);
     return points.least_separation() <= separation + cell_bias(pair);
 }

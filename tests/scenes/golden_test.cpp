@@ -57,7 +57,7 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
     EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "e9db817d8b570f5474631f835d2d61fe");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "50dacb1c33d81761ff16a8134cac860e");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "29d13c4507cf7cba5afc3d16ff4708f6");
     EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "4feb6931146730955537e99bd832b0bc");
 }
 

@@ -202,5 +202,36 @@ TEST(Stack, OfThinBoxesDroppedCrosswiseDoesNotMerge) {
             }
 }
 
+/// Piles of eight sheets that lean and are turned against each other, of which some turned into
+/// each other, one end after the other.
+TEST(Stack, OfSheetsThatFallAslantDoesNotMerge) {
+    const Vec4 size{0.1, 0.1, 1, 1};
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        std::mt19937_64 random(seed);
+        const auto uniform = [&](double least, double most) {
+            return std::uniform_real_distribution<>(least, most)(random);
+        };
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        BodyType type = box_type(size);
+        type.friction = 0.5;
+        double height = 0;
+        for (int i = 0; i < 8; ++i) {
+            const Rotor crosswise =
+                exp(Bivector{0, uniform(-1.5, 1.5), uniform(-1.5, 1.5), 0, 0, uniform(-1.5, 1.5)});
+            const Rotor rotor = crosswise * exp(Bivector{uniform(-0.2, 0.2), uniform(-0.2, 0.2), 0,
+                                                         uniform(-0.2, 0.2), 0, 0});
+            const double half = 0.5 * size.dot(to_matrix(rotor).row(1).cwiseAbs());
+            height += half + uniform(1e-4, 0.1);
+            add(bodies, type, {uniform(-0.01, 0.01), height, uniform(-0.01, 0.01), 0}, Vec4::Zero(),
+                {}, rotor);
+            height += half;
+        }
+        World world(bodies, PhysicsSettings{});
+        for (int i = 0; i < 959; ++i) world.step(kStep);
+        EXPECT_LT(world.step(kStep).penetration, 0.1 * size[1]) << seed;
+    }
+}
+
 }  // namespace
 }  // namespace tesserae
