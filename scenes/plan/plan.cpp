@@ -26,7 +26,7 @@ constexpr std::uint64_t kStateBytes = (4 + 8 + 4 + 6) * sizeof(double);
 constexpr std::uint64_t kSimulateStates = 4, kRenderStates = 6;
 /// Of a step, for a movable body: bounds, pairs, contacts and rows, and what a checkpoint copies.
 /// Measured: a sphere of a pile of 10^4, a box with 16 contact points (tesserae simulate).
-constexpr std::uint64_t kSphereStepBytes = 2'900, kStepBytes = 10'000;
+constexpr std::uint64_t kSphereStepBytes = 1'900, kStepBytes = 7'000;
 /// Of these in a checkpoint: impulses, and a box's manifolds.
 constexpr std::uint64_t kSphereCheckpointBytes = 120, kCheckpointBytes = 1'200;
 /// A body's bounds in the picture's hierarchy and lists.

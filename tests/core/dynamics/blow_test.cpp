@@ -125,6 +125,7 @@ TEST(Blow, OnASoftRowAddsNoEnergy) {
             BodyType made =
                 trial % 2 ? sphere_type(0.5 * size) : regular_type(RegularPolychoron::k8Cell, size);
             made.mass = of, made.restitution = e, made.friction = mu;
+            made.rolling_friction = trial % 5 == 0 ? 0.1 * size : 0;
             return made;
         };
         Bodies bodies;
