@@ -29,7 +29,7 @@ void scale(std::array<Eight, kSize>& all, float by) {
 
 }  // namespace
 
-double work_of_round(const ColouredStage& stage, std::uint32_t batch) {
+double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
     const ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
     Float8 work = -kEvery.load(normal[batch]) * kEvery.load(coloured.round_relax.target[batch]);
@@ -42,7 +42,7 @@ double work_of_round(const ColouredStage& stage, std::uint32_t batch) {
     return sum_of(work);
 }
 
-double work_of_general(const ColouredStage& stage, std::uint32_t index) {
+double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const auto along = load_all(kEvery, coloured.frames[index].motion);

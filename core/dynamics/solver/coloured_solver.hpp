@@ -168,10 +168,12 @@ inline LoadWork work_of_load(const ColouredIsland& island) {
     for_all_rows(
         island, OneThread{},
         [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i) work += work_of_round(stage, i);
+            for (std::uint32_t i = all.begin; i < all.end; ++i)
+                work += load_work_of_round(stage, i);
         },
         [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i) work += work_of_general(stage, i);
+            for (std::uint32_t i = all.begin; i < all.end; ++i)
+                work += load_work_of_general(stage, i);
         });
     return {stage.mass_unit * work, energy_of_changes(stage, island.bodies())};
 }

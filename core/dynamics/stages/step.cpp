@@ -147,11 +147,13 @@ void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpu
     const bool rolling = simulation.needs.rolling;
     const KeptImpulses& last = last_impulses(simulation, step);
     const std::vector<Bivector>& last_angular = last_angular_impulses(simulation, step);
-    const auto sleeps = [&](const KeptImpulse& impulse) {
-        return is_asleep(step, impulse.a) || is_asleep(step, impulse.b);
+    const auto sleeps = [&](const auto& of) {
+        return is_asleep(step, of.a) || is_asleep(step, of.b);
     };
     KeptImpulses::Size count = count_pushing(step, {0, step.impulses.size()});
-    count.runs += last.runs().size(), count.impulses += last.size();
+    for (std::size_t run = 0; run < last.runs().size(); ++run)
+        if (const KeptImpulses::Run& of = last.runs()[run]; sleeps(of))
+            ++count.runs, count.impulses += last.end_of(run) - of.first;
     step.merged_impulses.reserve_anew(count);
     if (rolling) reserve_anew(step.merged_angular, count.impulses);
 

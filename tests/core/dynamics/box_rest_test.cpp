@@ -172,6 +172,16 @@ TEST(Stack, CapsulesSideBySideCarryABox) {
         EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
 }
 
+double uniform(std::mt19937_64& random, double least, double most) {
+    return std::uniform_real_distribution<>(least, most)(random);
+}
+
+/// Turned about the vertical.
+Rotor crosswise(std::mt19937_64& random) {
+    const double xz = uniform(random, -1.5, 1.5), xw = uniform(random, -1.5, 1.5);
+    return exp(Bivector{0, xz, xw, 0, 0, uniform(random, -1.5, 1.5)});
+}
+
 /// Rulers, boards, sheets and cards that fall on each other crosswise: a thin box that lands a
 /// little aslant must not turn about one point after the other until both are one.
 TEST(Stack, OfThinBoxesDroppedCrosswiseDoesNotMerge) {
@@ -181,18 +191,14 @@ TEST(Stack, OfThinBoxesDroppedCrosswiseDoesNotMerge) {
         for (const Vec4& size : sizes)
             for (std::uint64_t seed = 0; seed < 6; ++seed) {
                 std::mt19937_64 random(seed);
-                const auto uniform = [&](double least, double most) {
-                    return std::uniform_real_distribution<>(least, most)(random);
-                };
                 Bodies bodies;
                 add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
                 BodyType type = box_type(size);
                 type.friction = 0.5;
-                const double fall = uniform(0.1, 3) * size[1];
+                const double fall = uniform(random, 0.1, 3) * size[1];
                 add(bodies, type, {0, 0.5 * size[1], 0, 0});
                 add(bodies, type, {0, 1.5 * size[1] + fall, 0, 0}, Vec4::Zero(), {},
-                    exp(Bivector{0, uniform(-1.5, 1.5), uniform(-1.5, 1.5), 0, 0,
-                                 uniform(-1.5, 1.5)}));
+                    crosswise(random));
                 World world(bodies, settings);
                 for (int i = 0; i < 480; ++i)
                     ASSERT_LT(world.step(kStep).penetration, 0.2 * size[1]) << size[1] << seed;
@@ -208,23 +214,20 @@ TEST(Stack, OfSheetsThatFallAslantDoesNotMerge) {
     const Vec4 size{0.1, 0.1, 1, 1};
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         std::mt19937_64 random(seed);
-        const auto uniform = [&](double least, double most) {
-            return std::uniform_real_distribution<>(least, most)(random);
-        };
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         BodyType type = box_type(size);
         type.friction = 0.5;
         double height = 0;
         for (int i = 0; i < 8; ++i) {
-            const Rotor crosswise =
-                exp(Bivector{0, uniform(-1.5, 1.5), uniform(-1.5, 1.5), 0, 0, uniform(-1.5, 1.5)});
-            const Rotor rotor = crosswise * exp(Bivector{uniform(-0.2, 0.2), uniform(-0.2, 0.2), 0,
-                                                         uniform(-0.2, 0.2), 0, 0});
+            const Rotor rotor = crosswise(random) *
+                                exp(Bivector{uniform(random, -0.2, 0.2), uniform(random, -0.2, 0.2),
+                                             0, uniform(random, -0.2, 0.2), 0, 0});
             const double half = 0.5 * size.dot(to_matrix(rotor).row(1).cwiseAbs());
-            height += half + uniform(1e-4, 0.1);
-            add(bodies, type, {uniform(-0.01, 0.01), height, uniform(-0.01, 0.01), 0}, Vec4::Zero(),
-                {}, rotor);
+            height += half + uniform(random, 1e-4, 0.1);
+            add(bodies, type,
+                {uniform(random, -0.01, 0.01), height, uniform(random, -0.01, 0.01), 0},
+                Vec4::Zero(), {}, rotor);
             height += half;
         }
         World world(bodies, PhysicsSettings{});
