@@ -237,7 +237,7 @@ void broad_phase(State& state) {
     parallel::ParallelWorld world(cloud_of_spheres(count, 0.5, Vec4::Zero()), PhysicsSettings{});
     world.observe(&found);
     parallel::Threads(1).run([&] { world.step(kStep); });
-    std::vector<BodyPair> pairs;
+    parallel::PairTable pairs;
     parallel::SortAndSweep sort_and_sweep;
     parallel::Threads threads(1);
     threads.run([&] {

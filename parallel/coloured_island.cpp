@@ -13,6 +13,7 @@ namespace {
 
 /// Items of one task: some 5 us of work.
 constexpr std::size_t kIslandBodyGrain = 512;
+static_assert(kIslandBodyGrain % kSumPiece == 0);
 constexpr std::size_t kPointGrain = 1024;
 
 class AllThreads {

@@ -37,10 +37,9 @@ void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
     lists_.collect(
         kInRanges, candidates_.size(), kCandidateGrain,
         [&](Range range, std::vector<BodyPair>& list) {
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                const auto [a, b] = candidates_[i];
+            candidates_.for_each(range, [&](BodyId a, BodyId b) {
                 if (is_pair(simulation, step, a, b)) list.push_back({a, b});
-            }
+            });
         },
         step.pairs);
 }

@@ -36,7 +36,7 @@ class KeptPairs {
     SortAndSweep sort_and_sweep_;
     bool held_ = false;          ///< whether there was a search that is not forgotten
     std::vector<Bounds> large_;  ///< of every body, at the last search
-    std::vector<BodyPair> candidates_;
+    PairTable candidates_;
     ChunkedList<BodyPair> lists_;
     std::uint64_t searches_ = 0;
 };

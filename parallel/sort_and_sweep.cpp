@@ -51,8 +51,7 @@ double padded(const Bounds& bounds) {
 }  // namespace
 
 void SortAndSweep::overlapping_pairs(const Simulation& simulation,
-                                     const std::vector<Bounds>& bounds,
-                                     std::vector<BodyPair>& pairs) {
+                                     const std::vector<Bounds>& bounds, PairTable& pairs) {
     bounded_.clear();
     unbounded_.clear();
     for (BodyId id = 0; id < simulation.bodies.size(); ++id)
@@ -78,7 +77,7 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
 
 void SortAndSweep::release() {
     const auto of = [](auto& list) { tesserae::release(list); };
-    of(entries_), of(items_), of(cells_), of(found_), of(first_);
+    of(entries_), of(items_), of(cells_), of(found_);
     pair_lists_.release();
 }
 
@@ -328,15 +327,16 @@ void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
 }
 
 /// By counting each body's pairs, and then each body's by their second.
-void SortAndSweep::sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted) {
-    resize_anew(sorted, found_.size());
+void SortAndSweep::sort_pairs(std::size_t bodies, PairTable& sorted) {
+    auto& [first, second] = sorted;
+    resize_anew(second, found_.size());
     counting_sort(
-        found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first_,
-        [&](std::size_t i, std::size_t place) { sorted[place] = found_[i]; });
+        found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first,
+        [&](std::size_t i, std::size_t place) { second[place] = found_[i].b; });
     for_each_range(bodies, kGrain, [&](Range range) {
         for (std::size_t a = range.begin; a < range.end; ++a)
-            std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first_[a]),
-                      sorted.begin() + static_cast<std::ptrdiff_t>(first_[a + 1]));
+            std::sort(second.begin() + static_cast<std::ptrdiff_t>(first[a]),
+                      second.begin() + static_cast<std::ptrdiff_t>(first[a + 1]));
     });
 }
 

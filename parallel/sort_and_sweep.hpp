@@ -1,12 +1,31 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "core/dynamics/stages/chunked_list.hpp"
 #include "core/dynamics/state/step_data.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
+
+/// Pairs of bodies, ascending: each body's seconds are there one after the other.
+struct PairTable {
+    std::vector<std::size_t> first = {0};  ///< of every body's in `second`, and an end
+    std::vector<BodyId> second;
+
+    std::size_t size() const { return second.size(); }
+    /// Calls visit(a, b) for some of the pairs, by their numbers.
+    template <class Visit>
+    void for_each(Range pairs, const Visit& visit) const {
+        auto next = std::upper_bound(first.begin(), first.end(), pairs.begin);
+        for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
+            while (*next == i) ++next;
+            visit(static_cast<BodyId>(next - first.begin() - 1), second[i]);
+        }
+    }
+};
 
 /// Finds overlapping balls in time that grows little faster than their number.
 ///
@@ -27,10 +46,10 @@ class SortAndSweep {
     static constexpr std::size_t kMostLevels = 8;
 
     /// @param bounds   of every body
-    /// @param pairs    becomes, ascending, all pairs that overlap and one of which contacts can
+    /// @param pairs    becomes all pairs that overlap and one of which contacts can
     ///                 move, and a few that miss each other by less than rounding
     void overlapping_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
-                           std::vector<BodyPair>& pairs);
+                           PairTable& pairs);
 
     /// Gives back the memory that it keeps for the next search.
     void release();
@@ -82,7 +101,7 @@ class SortAndSweep {
     void add_if_overlapping(const Item& a, const Item& b, std::vector<BodyPair>& pairs) const;
     void add_unbounded(const Simulation& simulation, Range items,
                        std::vector<BodyPair>& pairs) const;
-    void sort_pairs(std::size_t bodies, std::vector<BodyPair>& sorted);
+    void sort_pairs(std::size_t bodies, PairTable& sorted);
 
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
@@ -94,7 +113,6 @@ class SortAndSweep {
     std::vector<Cell> cells_;     ///< those that hold bodies, ascending, and the end of items_
     ChunkedList<BodyPair> pair_lists_;
     std::vector<BodyPair> found_;
-    std::vector<std::size_t> first_;  ///< of each body's pairs, as their first, and an end
 };
 
 }  // namespace tesserae::parallel

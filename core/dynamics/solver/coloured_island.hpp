@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 
 #include "core/dynamics/solver/coloured_kernels.hpp"
 
@@ -67,6 +69,12 @@ class ColouredIsland {
 
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
+    /// Of pieces of them, see kSumPiece.
+    std::span<std::array<double, 3>> body_sums() const {
+        const auto [begin, end] = bodies();
+        std::array<double, 3>* const first = all_.body_sums.data() + begin / kSumPiece + place_;
+        return {first, (end - begin + kSumPiece - 1) / kSumPiece};
+    }
 
     /// Calls visit(batches of a colour, threads, lanes) for every colour in its turn. The last one
     /// holds what is left over, which shares bodies: one thread and one lane.
@@ -86,7 +94,7 @@ class ColouredIsland {
     }
 
   private:
-    const ColouredIslands& all_;
+    ColouredIslands& all_;
     std::uint32_t place_;
     ColouredStage stage_;
 };

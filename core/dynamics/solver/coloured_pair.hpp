@@ -10,6 +10,12 @@
 // The bodies of a pair that is not round, lane by lane, and the frame of its contacts.
 namespace tesserae::lanes {
 
+/// Place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by row.
+template <std::size_t kSize>
+constexpr std::size_t in_triangle(std::size_t i, std::size_t j) {
+    return i <= j ? i * kSize - i * (i + 1) / 2 + j : in_triangle<kSize>(j, i);
+}
+
 /// What an angular impulse does to each lane's body.
 template <class F, bool kUneven>
 class Inverse {
@@ -18,6 +24,12 @@ class Inverse {
         : scalar_(scalar) {}
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& moment) const {
         return scalar_ * moment;
+    }
+    /// Of a unit moment.
+    [[gnu::always_inline]] LaneBivector<F> column(std::size_t plane) const {
+        LaneBivector<F> w{};
+        w[plane] = scalar_;
+        return w;
     }
 
   private:
@@ -36,6 +48,11 @@ class Inverse<F, true> {
         };
         return {row(0, 1, 2, 3, 4, 5),     row(1, 6, 7, 8, 9, 10),    row(2, 7, 11, 12, 13, 14),
                 row(3, 8, 12, 15, 16, 17), row(4, 9, 13, 16, 18, 19), row(5, 10, 14, 17, 19, 20)};
+    }
+    [[gnu::always_inline]] LaneBivector<F> column(std::size_t plane) const {
+        LaneBivector<F> w;
+        for (std::size_t i = 0; i < 6; ++i) w[i] = lane_.load(inertia_[in_triangle<6>(i, plane)]);
+        return w;
     }
 
   private:
@@ -154,36 +171,6 @@ class LanePair {
     LaneBodies<F> bodies_a_, bodies_b_;
     Motion<F> a_, b_;
 };
-
-/// What impulses at a pair's centre change there.
-template <class F, bool kUneven>
-class Response {
-  public:
-    [[gnu::always_inline]] explicit Response(const LanePair<F, kUneven>& pair)
-        : inverse_mass_(pair.inverse_mass()),
-          centre_a_(pair.centre_a()),
-          centre_b_(pair.centre_b()),
-          a_(pair.inverse_a()),
-          b_(pair.inverse_b()) {}
-
-    [[gnu::always_inline]] Screw<F> operator()(const Screw<F>& impulse) const {
-        const LaneVec4<F>& p = impulse.straight;
-        const LaneBivector<F> a = a_.of(impulse.turning + wedge(centre_a_, p));
-        const LaneBivector<F> b = b_.of(impulse.turning + wedge(centre_b_, p));
-        return {inverse_mass_ * p + (velocity_at(a, centre_a_) + velocity_at(b, centre_b_)), a + b};
-    }
-
-  private:
-    F inverse_mass_;
-    LaneVec4<F> centre_a_, centre_b_;
-    Inverse<F, kUneven> a_, b_;
-};
-
-/// Place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by row.
-template <std::size_t kSize>
-constexpr std::size_t in_triangle(std::size_t i, std::size_t j) {
-    return i <= j ? i * kSize - i * (i + 1) / 2 + j : in_triangle<kSize>(j, i);
-}
 
 template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
           std::size_t... kColumn>

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "core/dynamics/solver/coloured_kernels.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
@@ -99,17 +101,21 @@ inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index,
     put((1 / stage.mass_unit) * stage.step.angular_impulses[index], lane, impulse);
 }
 
+/// Of a pair, world.
+struct PairPoint {
+    Vec4 place;
+    double separation;
+};
 /// In the midst of a pair's points, as high along the normal as the deepest.
-inline Vec4 centre_of(const StepData& step, std::uint32_t first, std::size_t count) {
-    const ContactList& contacts = step.contacts;
-    Vec4 sum = contacts.point(first);
-    std::uint32_t deepest = first;
-    for (std::uint32_t i = first + 1; i < first + count; ++i) {
-        sum += Vec4(contacts.point(i));
-        if (contacts.separation(i) < contacts.separation(deepest)) deepest = i;
+inline Vec4 centre_of(std::span<const PairPoint> points, const Vec4& normal) {
+    Vec4 sum = points[0].place;
+    const PairPoint* deepest = &points[0];
+    for (const PairPoint& point : points.subspan(1)) {
+        sum += point.place;
+        if (point.separation < deepest->separation) deepest = &point;
     }
-    const Vec4 mean = sum / static_cast<double>(count), normal = contacts.normal(first);
-    return mean + normal.dot(contacts.point(deepest) - mean) * normal;
+    const Vec4 mean = sum / static_cast<double>(points.size());
+    return mean + normal.dot(deepest->place - mean) * normal;
 }
 
 /// As put_point(), of a pair with so many contacts from `first` on.
@@ -121,7 +127,11 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const BodyId a = contact.a, b = contact.b;
     const PairTargets targets_of(simulation, step, contact, stage.cause, stage.pushed);
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
-    const Vec4 centre = centre_of(step, first, count);
+    std::array<PairPoint, kManifoldPoints> points;
+    points[0] = {contact.point, contact.separation};
+    for (std::uint32_t p = 1; p < count; ++p)
+        points[p] = {step.contacts.point(first + p), step.contacts.separation(first + p)};
+    const Vec4 centre = centre_of({points.data(), count}, contact.normal);
     const Vec4 r_a = centre - step.position[a], r_b = centre - step.position[b];
     const Vec4 v = relative_velocity(step, a, r_a, b, r_b, simulation.needs.turning);
     Bivector turning;
@@ -137,10 +147,10 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         EightPairs::Points& point = pairs.points[p];
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
-        const Vec4 place = step.contacts.point(first + p) - centre;
+        const Vec4 place = points[p].place - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
-        const ContactTargets targets = targets_of.at(step.contacts.separation(first + p), along);
+        const ContactTargets targets = targets_of.at(points[p].separation, along);
         put(place, point.place[lane]);
         put(per_mass_unit * impulse.tangent(), point.impulse[lane]);
         put({targets.solve, targets.relax, targets.keep, per_mass_unit * impulse.normal},

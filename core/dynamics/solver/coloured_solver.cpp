@@ -108,7 +108,8 @@ void begin_push(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyChange& change = coloured.changes[i];
-        coloured.last_changes[i] = {change.velocity, change.first_planes, change.rest};
+        coloured.last_changes[i] = {
+            change.velocity, change.first_planes, {change.rest[0], change.rest[1]}};
     }
 }
 

@@ -8,38 +8,104 @@ namespace {
 
 using namespace lanes;
 
+/// What a unit impulse at a pair's centre along each axis, and a unit moment in each plane, changes
+/// there: symmetric.
+template <class F>
+struct CentreResponse {
+    std::array<LaneVec4<F>, 4> straight{};     ///< velocity by impulses
+    std::array<LaneVec4<F>, 6> coupled{};      ///< velocity by moments; turning by impulses
+    std::array<LaneBivector<F>, 6> turning{};  ///< by moments
+};
+/// The entries of each plane's, of the vectors' axis.
+template <class F>
+[[gnu::always_inline]] inline LaneBivector<F> of_axis(const std::array<LaneVec4<F>, 6>& of_planes,
+                                                      std::size_t axis) {
+    LaneBivector<F> b;
+    for (std::size_t plane = 0; plane < 6; ++plane) b[plane] = of_planes[plane][axis];
+    return b;
+}
+
+/// Adds a body's part, but for its mass: an impulse p has the moment c ^ p, and w.(c ^ p) is
+/// p.velocity_at(w, c).
+template <class F, bool kUneven>
+[[gnu::always_inline]] inline void add_turning(const Inverse<F, kUneven>& inverse,
+                                               const LaneVec4<F>& centre, CentreResponse<F>& to) {
+    std::array<LaneVec4<F>, 6> coupled;
+    for (std::size_t plane = 0; plane < 6; ++plane) {
+        const LaneBivector<F> turning = inverse.column(plane);
+        coupled[plane] = velocity_at(turning, centre);
+        to.turning[plane] = to.turning[plane] + turning;
+        to.coupled[plane] = to.coupled[plane] + coupled[plane];
+    }
+    for (std::size_t axis = 0; axis < 4; ++axis)
+        to.straight[axis] = to.straight[axis] + velocity_at(of_axis(coupled, axis), centre);
+}
+
+/// From the world's axes to the frame's.
+template <class F>
+[[gnu::always_inline]] inline CentreResponse<F> reflected(const Frame<F>& frame,
+                                                          const CentreResponse<F>& of) {
+    std::array<LaneVec4<F>, 4> straight;
+    std::array<LaneVec4<F>, 6> coupled;
+    std::array<LaneBivector<F>, 6> turning;
+    for (std::size_t i = 0; i < 4; ++i) straight[i] = frame.reflected(of.straight[i]);
+    for (std::size_t i = 0; i < 6; ++i) coupled[i] = frame.reflected(of.coupled[i]);
+    for (std::size_t i = 0; i < 6; ++i) turning[i] = frame.reflected(of.turning[i]);
+    CentreResponse<F> to;
+    for (std::size_t j = 0; j < 4; ++j) {
+        to.straight[j] = frame.reflected(
+            LaneVec4<F>{straight[0][j], straight[1][j], straight[2][j], straight[3][j]});
+        const LaneBivector<F> turned = frame.reflected(of_axis(coupled, j));
+        for (std::size_t i = 0; i < 6; ++i) to.coupled[i][j] = turned[i];
+    }
+    for (std::size_t j = 0; j < 6; ++j)
+        to.turning[j] =
+            frame.reflected(LaneBivector<F>{turning[0][j], turning[1][j], turning[2][j],
+                                            turning[3][j], turning[4][j], turning[5][j]});
+    return to;
+}
+
 /// A pair's responses to impulses along the normal and across it: symmetric.
 template <class F>
 struct Responses {
     std::array<F, 10> along;
     std::array<F, 21> across;
 };
-/// @param turns   else its one point is the centre, where impulses do not turn
+/// The planes that turn in xn yn zn and in xy xz yz, see FrameScrew.
+constexpr std::array<std::size_t, 3> kAlong = {2, 4, 5}, kAcross = {0, 1, 3};
 template <bool kFriction, class F, bool kUneven>
 [[gnu::always_inline]] inline void make_frame(const Lane<F>& lane, const LanePair<F, kUneven>& pair,
-                                              const Frame<F>& frame, bool turns, Responses<F>& to,
+                                              const Frame<F>& frame, Responses<F>& to,
                                               PairFriction* friction) {
-    const F one = F{} + 1.0f;
-    const Response<F, kUneven> response(pair);
-    for (std::size_t i = 0; i < 4; ++i) {
-        FrameScrew<F> unit{};
-        if (i == 0 || turns) {
-            unit.along[i] = one;
-            unit = frame.from_world(response(frame.to_world(unit)));
-        }
-        for (std::size_t j = i; j < 4; ++j) to.along[in_triangle<4>(i, j)] = unit.along[j];
-        if constexpr (kFriction) store_all(lane, unit.across, friction->coupled[i]);
+    CentreResponse<F> world;
+    add_turning(pair.inverse_a(), pair.centre_a(), world);
+    add_turning(pair.inverse_b(), pair.centre_b(), world);
+    for (std::size_t i = 0; i < 4; ++i) world.straight[i][i] += pair.inverse_mass();
+    const CentreResponse<F> of = reflected(frame, world);
+    to.along[0] = of.straight[3][3];
+    for (std::size_t i = 0; i < 3; ++i) {
+        to.along[in_triangle<4>(0, 1 + i)] = of.coupled[kAlong[i]][3];
+        for (std::size_t j = i; j < 3; ++j)
+            to.along[in_triangle<4>(1 + i, 1 + j)] = of.turning[kAlong[i]][kAlong[j]];
     }
-    if constexpr (kFriction)
-        for (std::size_t i = 0; i < 6; ++i) {
-            FrameScrew<F> unit{};
-            if (i < 3 || turns) {
-                unit.across[i] = one;
-                unit = frame.from_world(response(frame.to_world(unit)));
+    if constexpr (kFriction) {
+        std::array<std::array<F, 6>, 4> coupled;
+        for (std::size_t i = 0; i < 3; ++i) {
+            coupled[0][i] = frame.g * of.straight[3][i];
+            coupled[0][3 + i] = frame.g * of.coupled[kAcross[i]][3];
+            for (std::size_t j = 0; j < 3; ++j) {
+                coupled[1 + i][j] = frame.g * of.coupled[kAlong[i]][j];
+                coupled[1 + i][3 + j] = frame.g * of.turning[kAlong[i]][kAcross[j]];
+                to.across[in_triangle<6>(i, 3 + j)] = of.coupled[kAcross[j]][i];
             }
-            for (std::size_t j = i; j < 6; ++j) to.across[in_triangle<6>(i, j)] = unit.across[j];
+            for (std::size_t j = i; j < 3; ++j) {
+                to.across[in_triangle<6>(i, j)] = of.straight[i][j];
+                to.across[in_triangle<6>(3 + i, 3 + j)] = of.turning[kAcross[i]][kAcross[j]];
+            }
         }
-    if constexpr (kFriction) store_all(lane, to.across, friction->response);
+        for (std::size_t i = 0; i < 4; ++i) store_all(lane, coupled[i], friction->coupled[i]);
+        store_all(lane, to.across, friction->response);
+    }
 }
 
 /// The masses of rolling or twisting: of a block of three of a response.
@@ -78,19 +144,29 @@ template <class F>
     }
 }
 
-/// A block of three of the tangents at a place, from what each does there.
+/// The velocity across the normal at a place by turning in xy xz yz alone.
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> turned_at(const Place<F>& at, F xy, F xz, F yz) {
+    const auto& [x, y, z] = at;
+    return {-fused(y, xy, z * xz), fused(x, xy, -(z * yz)), fused(x, xz, y * yz), F{}};
+}
+/// A block of three of the tangents at a place, xx xy xz yy yz zz.
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 6> tangent_response(const std::array<F, 21>& across,
                                                                 const Place<F>& at) {
-    std::array<LaneVec4<F>, 3> K;
+    const auto entry = [&](std::size_t i, std::size_t j) { return across[in_triangle<6>(i, j)]; };
+    std::array<LaneVec4<F>, 3> coupled, turning;  // by the moments of unit impulses at the place
     for (std::size_t i = 0; i < 3; ++i) {
-        LaneVec4<F> direction{};
-        direction[i] = F{} + 1.0f;
-        std::array<F, 6> change{};
-        add_product(across, seen_from_centre(at, direction), change);
-        K[i] = across_at(at, change);
+        coupled[i] = turned_at(at, entry(i, 3), entry(i, 4), entry(i, 5));
+        turning[i] = turned_at(at, entry(3 + i, 3), entry(3 + i, 4), entry(3 + i, 5));
     }
-    return {K[0][0], K[0][1], K[0][2], K[1][1], K[1][2], K[2][2]};
+    std::array<F, 6> K;
+    for (std::size_t j = 0; j < 3; ++j) {
+        const LaneVec4<F> turned = turned_at(at, turning[0][j], turning[1][j], turning[2][j]);
+        for (std::size_t i = 0; i <= j; ++i)
+            K[in_triangle<3>(i, j)] = entry(i, j) + (coupled[i][j] + coupled[j][i]) + turned[i];
+    }
+    return K;
 }
 
 /// What a unit impulse at a point does at those before it and at itself.
@@ -136,7 +212,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     const LanePair<F, kUneven> pair(lane, coloured, index);
     PairFriction* friction = kFriction ? &coloured.pair_friction[index] : nullptr;
     Responses<F> response;
-    make_frame<kFriction>(lane, pair, frame, batch.rows > 1 || kRolling, response, friction);
+    make_frame<kFriction>(lane, pair, frame, response, friction);
     if constexpr (kRolling) {
         PairRolling& rolling = coloured.pair_rolling[index];
         store_all(lane, response.along, rolling.response);

@@ -68,12 +68,14 @@ class Work {
         of_step_ = simd::fused(kAll.load(last) - now, velocity, of_step_);
         of_all_ = simd::fused(now, velocity, of_all_);
     }
-    void store(std::array<Eight, 2>& to) const {
-        kAll.store(of_step_, to[0]);
-        kAll.store(of_all_, to[1]);
-    }
+    std::array<double, 2> sums() const { return {sum_of(of_step_), sum_of(of_all_)}; }
 
   private:
+    static double sum_of(const Float8& lanes) {
+        double sum = 0;
+        for (std::size_t i = 0; i < kLanes; ++i) sum += double{lanes[i]};
+        return sum;
+    }
     Float8 of_step_{}, of_all_{};
 };
 
@@ -102,17 +104,18 @@ using simd::Float4;
 /// A body's record as three vectors of four.
 using Twelve = std::array<Float4, 3>;
 
+/// Without the masses.
 template <class Record>
 [[gnu::always_inline]] inline Twelve load(const Record& record) {
     return {simd::same_bits<Float4>(record.velocity), simd::same_bits<Float4>(record.first_planes),
-            simd::same_bits<Float4>(record.rest)};
+            Float4{record.rest[0], record.rest[1]}};
 }
 template <class Record>
 [[gnu::always_inline]] inline void store(const Twelve& x, Record& record) {
     using Four = std::array<float, 4>;
     record.velocity = simd::same_bits<Four>(x[0]);
     record.first_planes = simd::same_bits<Four>(x[1]);
-    record.rest = simd::same_bits<Four>(x[2]);
+    record.rest[0] = x[2][0], record.rest[1] = x[2][1];
 }
 [[gnu::always_inline]] inline Twelve operator+(const Twelve& a, const Twelve& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -163,14 +166,6 @@ BodyInertia columns(const BivectorMap& map, double factor) {
     return 0.5 * product(change, momentum_of(coloured, body, change));
 }
 
-/// Without the masses in a record of changes.
-template <class Record>
-[[gnu::always_inline]] inline Twelve change_of(const Record& record) {
-    Twelve change = load(record);
-    change[2][2] = change[2][3] = 0;
-    return change;
-}
-
 }  // namespace
 
 bool has_conjugates(const Simulation& simulation) {
@@ -181,8 +176,9 @@ bool has_conjugates(const Simulation& simulation) {
                });
 }
 
-void weigh_recalled(const ColouredStage& stage, Range bodies) {
+BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
+    BodySums sums = {};
     const double kick_squared = (stage.step.h * stage.simulation.settings.gravity).squaredNorm();
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = coloured.bodies[i];
@@ -192,9 +188,10 @@ void weigh_recalled(const ColouredStage& stage, Range bodies) {
                 type.isotropic ? BodyInertia{}
                                : columns(world_map(type.inertia, type, stage.step.rotor[id]),
                                          1 / stage.mass_unit);
-        const double falls = type.falls ? 0.5 * type.mass / stage.mass_unit * kick_squared : 0;
-        coloured.body_sums[i] = {energy_of(coloured, i, change_of(coloured.changes[i])), falls, 0};
+        sums[0] += energy_of(coloured, i, load(coloured.changes[i]));
+        if (type.falls) sums[1] += 0.5 * type.mass / stage.mass_unit * kick_squared;
     }
+    return sums;
 }
 
 void begin_recalled_round(const ColouredStage& stage, BatchRange batches) {
@@ -208,9 +205,7 @@ void begin_recalled_general(const ColouredStage& stage, BatchRange batches) {
 void leave_part(const ColouredStage& stage, Range bodies, float part) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         BodyChange& change = stage.step.coloured.changes[i];
-        const std::array<float, 4> rest = change.rest;
         store(part * load(change), change);
-        change.rest[2] = rest[2], change.rest[3] = rest[3];  // the masses
     }
 }
 
@@ -238,16 +233,17 @@ void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
     visit_general(stage.step.coloured, batches, begin);
 }
 
-void weigh_step(const ColouredStage& stage, Range bodies) {
-    ColouredIslands& coloured = stage.step.coloured;
+BodySums weigh_step(const ColouredStage& stage, Range bodies) {
+    const ColouredIslands& coloured = stage.step.coloured;
+    BodySums sums = {};
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const Twelve start = change_of(coloured.last_changes[i]);
-        const Twelve end = change_of(coloured.changes[i]);
+        const Twelve start = load(coloured.last_changes[i]), end = load(coloured.changes[i]);
         const Twelve of_start = momentum_of(coloured, i, start);
-        coloured.body_sums[i] = {-product(end - start, of_start),
-                                 -product(load(coloured.direction[i]), of_start),
-                                 energy_of(coloured, i, end)};
+        sums[0] -= product(end - start, of_start);
+        sums[1] -= product(load(coloured.direction[i]), of_start);
+        sums[2] += energy_of(coloured, i, end);
     }
+    return sums;
 }
 
 void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
@@ -261,25 +257,28 @@ void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
             for (std::size_t k = 0; k < 4; ++k)
                 work.add(tangent[i][k], last.tangent[i][k],
                          kAll.load(coloured.round_friction[i].slip[k]));
-        work.store(coloured.round_work[i]);
+        coloured.round_work[i] = work.sums();
     }
 }
 
 void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-        work_of_general(coloured, i).store(coloured.general_work[i]);
+        coloured.general_work[i] = work_of_general(coloured, i).sums();
 }
 
-void find_direction(const ColouredStage& stage, Range bodies, float carried) {
+BodySums find_direction(const ColouredStage& stage, Range bodies, float carried) {
     ColouredIslands& coloured = stage.step.coloured;
+    BodySums sums = {};
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const Twelve step = load(coloured.changes[i]) - load(coloured.last_changes[i]);
         const Twelve along = step + carried * load(coloured.direction[i]);
         store(along, coloured.direction[i]);
         const Twelve velocity = {along[0], Float4{}, Float4{}};
-        coloured.body_sums[i] = {2 * energy_of(coloured, i, along), product(velocity, velocity), 0};
+        sums[0] += 2 * energy_of(coloured, i, along);
+        sums[1] = std::max(sums[1], product(velocity, velocity));
     }
+    return sums;
 }
 
 void go_along(const ColouredStage& stage, Range bodies, float length) {

@@ -28,9 +28,12 @@ namespace tesserae {
 /// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
+/// Of some bodies.
+using BodySums = std::array<double, 3>;
+
 /// The energies of what the impulses that the load starts from have changed, and of what gravity
-/// has, into body_sums.
-void weigh_recalled(const ColouredStage& stage, Range bodies);
+/// has.
+BodySums weigh_recalled(const ColouredStage& stage, Range bodies);
 /// Before the rows' work on that is weighed, as that of a step from no impulses; then the part of
 /// it that is left is gone along, by go_along_round() and go_along_general().
 void begin_recalled_round(const ColouredStage& stage, BatchRange batches);
@@ -47,16 +50,16 @@ void begin_directions(const ColouredStage& stage, Range bodies);
 void begin_round_directions(const ColouredStage& stage, BatchRange batches);
 void begin_general_directions(const ColouredStage& stage, BatchRange batches);
 
-/// After a pair: r.z, r.p_last and the energy at its end: of each body, into body_sums; of each
-/// batch, into round_work and general_work.
-void weigh_step(const ColouredStage& stage, Range bodies);
+/// After a pair: r.z, r.p_last and the energy at its end: of bodies; of each batch, into round_work
+/// and general_work, r.z and the energy.
+BodySums weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);
 
-/// The bodies' part of the new direction; p.Ap and the square of the change of velocity, of each
-/// body, into body_sums.
+/// The bodies' part of the new direction.
 /// @param carried   b
-void find_direction(const ColouredStage& stage, Range bodies, float carried);
+/// @return p.Ap and the largest square of a change of velocity
+BodySums find_direction(const ColouredStage& stage, Range bodies, float carried);
 
 /// The beginning of the next pair.
 /// @param length   a

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/dynamics/constants.hpp"
 #include "core/dynamics/solver/coloured_island.hpp"
@@ -17,12 +18,9 @@ class ConjugateDirections {
     ConjugateDirections(const ColouredIsland& island, const Threads& threads)
         : island_(island), threads_(threads) {
         const ColouredStage& stage = island.stage();
-        for_bodies([](auto... of) { weigh_recalled(of...); });
         double recalled = 0, weight = 0;  // energies
-        for (std::size_t i = island.bodies().begin; i < island.bodies().end; ++i) {
-            recalled += stage.step.coloured.body_sums[i][0];
-            weight += stage.step.coloured.body_sums[i][1];
-        }
+        for (const BodySums& piece : sums_of([](auto... of) { return weigh_recalled(of...); }))
+            recalled += piece[0], weight += piece[1];
         if (recalled > kRecalledWeight * weight) recalled *= leave_part_of(recalled);
         rounding_ = kFloatStep * kFloatStep * recalled;
         for_all_rows(
@@ -35,24 +33,21 @@ class ConjugateDirections {
     /// The direction after a pair of sweeps.
     /// @return the largest change of a body's velocity by a step along it [m/s]
     double find() {
-        const ColouredStage& stage = island_.stage();
-        for_bodies([](auto... of) { weigh_step(of...); });
-        Sums sums = {};  // r.z, r.p_last and the energy
-        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i)
-            for (std::size_t k = 0; k < 3; ++k) sums[k] += stage.step.coloured.body_sums[i][k];
+        BodySums sums = {};  // r.z, r.p_last and the energy
+        for (const BodySums& piece : sums_of([](auto... of) { return weigh_step(of...); }))
+            for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
         rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
         const auto [of_step, of_all] = work();
         sums[0] += of_step, sums[1] += of_direction_, sums[2] += of_all;
         const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
         look_for_rise(ratio, sums[2]);
         carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
-        for_bodies([this](auto... of) { find_direction(of..., carried_); });
         of_direction_ = of_step + carried_ * of_direction_;
-
         double twice_energy = 0, fastest = 0;
-        for (std::size_t i = island_.bodies().begin; i < island_.bodies().end; ++i) {
-            twice_energy += stage.step.coloured.body_sums[i][0];
-            fastest = std::max(fastest, stage.step.coloured.body_sums[i][1]);
+        const auto find = [this](auto... of) { return find_direction(of..., carried_); };
+        for (const BodySums& piece : sums_of(find)) {
+            twice_energy += piece[0];
+            fastest = std::max(fastest, piece[1]);
         }
         const double length = (sums[0] + carried_ * sums[1]) / twice_energy;
         holds_ = plain_ == 0 && length > 1 && sums[0] > rounding_;
@@ -95,7 +90,6 @@ class ConjugateDirections {
     }
 
   private:
-    using Sums = std::array<double, 3>;
     /// What is changed by less than this part of what is recalled, or has been changed, is
     /// rounding, of which directions would grow.
     static constexpr double kFloatStep = 1e-6;
@@ -137,6 +131,18 @@ class ConjugateDirections {
     void for_bodies(const Work& work) const {
         threads_.for_bodies(island_.bodies(), [&](Range bodies) { work(island_.stage(), bodies); });
     }
+    /// What work(stage, bodies) returns of pieces of the bodies, in their order.
+    template <class Work>
+    std::span<const BodySums> sums_of(const Work& work) const {
+        const Range all = island_.bodies();
+        const std::span<BodySums> sums = island_.body_sums();
+        threads_.for_bodies(all, [&](Range bodies) {
+            for (std::size_t i = bodies.begin; i < bodies.end; i += kSumPiece)
+                sums[(i - all.begin) / kSumPiece] =
+                    work(island_.stage(), Range{i, std::min(i + kSumPiece, bodies.end)});
+        });
+        return sums;
+    }
     /// @return the largest that work(a batch) returns
     template <class Work>
     double one_by_one(BatchRange batches, Sweep sweep, const Work& work) const {
@@ -153,8 +159,7 @@ class ConjugateDirections {
         std::array<double, 2> sums = {};
         const auto add = [&](const auto& list, BatchRange batches) {
             for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-                for (std::size_t k = 0; k < 2; ++k)
-                    for (const float x : list[i][k].lane) sums[k] += x;
+                for (std::size_t k = 0; k < 2; ++k) sums[k] += list[i][k];
         };
         island_.for_colours(OneThread{}, LaneCount::kOne, false,
                             [&](const ColourBatches& batches, const auto&, LaneCount) {

@@ -38,7 +38,8 @@ void size_relax(const Simulation& simulation, std::size_t rows, NormalRelax& rel
 void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
-    resize_anew(coloured.body_sums, coloured.bodies.size());
+    resize_anew(coloured.body_sums,
+                coloured.bodies.size() / kSumPiece + coloured.first_body.size());
     size_impulses(coloured.round.size(), coloured.friction, coloured.last_round);
     size_impulses(coloured.round.size(), coloured.friction, coloured.round_direction);
     size_impulses(coloured.general_rows, coloured.friction, coloured.last_general);
@@ -82,18 +83,20 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
     place_.resize(simulation.bodies.size(), 0);
     list_pairs(simulation, step, island);
     // Large enough for the largest island: small ones come before and after it.
-    if (sorted_.size() < pairs_.size()) resize_anew(sorted_, pairs_.size());
+    if (order_.size() < pairs_.size()) resize_anew(order_, pairs_.size());
     counting_sort(
         pairs_.size(), (kColours + 1) * kKinds, [&](std::size_t i) { return pairs_[i].bucket; },
-        start_, [&](std::size_t i, std::size_t place) { sorted_[place] = pairs_[i]; });
+        start_,
+        [&](std::size_t i, std::size_t place) { order_[place] = static_cast<std::uint32_t>(i); });
 
     std::uint32_t one_row_each = 0;
     for (std::size_t colour = 0; colour <= kColours; ++colour) {
         const std::uint32_t* const start = &start_[colour * kKinds];
         if (start[0] == start[kKinds] && colour < kColours) continue;
-        const BatchRange round = add_batches({start[0], start[1]}, one_row_each, coloured.round);
+        const BatchRange round =
+            add_batches(step, {start[0], start[1]}, one_row_each, coloured.round);
         const BatchRange general =
-            add_batches({start[1], start[kKinds]}, coloured.general_rows, coloured.general);
+            add_batches(step, {start[1], start[kKinds]}, coloured.general_rows, coloured.general);
         for (std::uint32_t i = general.begin; i < general.end; ++i) {
             coloured.general[i].response = coloured.point_responses;
             coloured.point_responses += responses_of(coloured.general[i].rows);
@@ -164,31 +167,30 @@ void Colouring::add_pair(const Simulation& simulation, StepData& step, const Con
                          Range contacts) {
     Pair pair;
     pair.contact = static_cast<std::uint32_t>(contacts.begin);
-    pair.a = place_of(simulation, step, run.a);
-    pair.b = place_of(simulation, step, run.b);
+    const std::uint32_t a = place_of(simulation, step, run.a);
+    const std::uint32_t b = place_of(simulation, step, run.b);
     const std::size_t points = contacts.end - contacts.begin;
     const bool round =
         points == 1 && is_round(simulation.type_of(run.a)) && is_round(simulation.type_of(run.b));
     pair.points = static_cast<std::uint8_t>(points);
     used_.resize(step.coloured.bodies.size(), 0);
     const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
-    pair.bucket = static_cast<std::uint16_t>(colour_of(pair) * kKinds + kind);
+    pair.bucket = static_cast<std::uint16_t>(colour_of(a, b) * kKinds + kind);
     pairs_.push_back(pair);
 }
 
 /// The first that none of its movable bodies has yet; kColours if all are taken.
-int Colouring::colour_of(const Pair& pair) {
+int Colouring::colour_of(std::uint32_t a, std::uint32_t b) {
     // The first place is all immovable bodies': it takes no colour.
-    std::uint64_t &a = used_[pair.a], &b = used_[pair.b];
-    const std::uint64_t taken = (pair.a > 0 ? a : 0) | (pair.b > 0 ? b : 0);
+    const std::uint64_t taken = (a > 0 ? used_[a] : 0) | (b > 0 ? used_[b] : 0);
     const int colour = std::countr_one(taken);
     if (colour == kColours) return colour;
-    a |= std::uint64_t{1} << colour;
-    b |= std::uint64_t{1} << colour;
+    used_[a] |= std::uint64_t{1} << colour;
+    used_[b] |= std::uint64_t{1} << colour;
     return colour;
 }
 
-BatchRange Colouring::add_batches(Range pairs, std::uint32_t& rows,
+BatchRange Colouring::add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
                                   std::vector<Batch>& batches) const {
     BatchRange range;
     range.begin = static_cast<std::uint32_t>(batches.size());
@@ -196,8 +198,9 @@ BatchRange Colouring::add_batches(Range pairs, std::uint32_t& rows,
         Batch& batch = batches.emplace_back();
         batch.row = rows;
         for (std::size_t k = 0; k < std::min(kLanes, pairs.end - begin); ++k) {
-            const Pair& pair = sorted_[begin + k];
-            batch.a[k] = pair.a, batch.b[k] = pair.b;
+            const Pair& pair = pairs_[order_[begin + k]];
+            const auto [a, b] = step.contacts.pair(pair.contact);
+            batch.a[k] = place_[a], batch.b[k] = place_[b];
             batch.contact[k] = pair.contact, batch.points[k] = pair.points;
             batch.rows = std::max<std::uint32_t>(batch.rows, pair.points);
         }

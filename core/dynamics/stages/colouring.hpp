@@ -26,7 +26,6 @@ class Colouring {
     /// The contacts of two bodies, which follow each other in StepData::contacts.
     struct Pair {
         std::uint32_t contact;  ///< the first
-        std::uint32_t a, b;     ///< places in ColouredIslands::bodies
         std::uint16_t bucket;
         std::uint8_t points;
     };
@@ -34,13 +33,15 @@ class Colouring {
     void add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
                   Range contacts);
     std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
-    int colour_of(const Pair& pair);
-    BatchRange add_batches(Range pairs, std::uint32_t& rows, std::vector<Batch>& batches) const;
+    int colour_of(std::uint32_t a, std::uint32_t b);
+    BatchRange add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
+                           std::vector<Batch>& batches) const;
 
     std::vector<std::uint32_t> place_;  ///< of every body in ColouredIslands::bodies, or 0
     std::vector<std::uint64_t> used_;   ///< colours of each of these so far, a bit each
-    std::vector<Pair> pairs_, sorted_;  ///< of the island at hand
-    std::vector<std::uint32_t> start_;  ///< of each bucket in sorted_, and an end
+    std::vector<Pair> pairs_;           ///< of the island at hand
+    std::vector<std::uint32_t> order_;  ///< of their numbers, by buckets
+    std::vector<std::uint32_t> start_;  ///< of each bucket in it, and an end
 };
 
 }  // namespace tesserae

@@ -35,10 +35,14 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
-/// The same in as little memory as it takes.
-struct alignas(16) PackedChange {
-    std::array<float, 4> velocity = {}, first_planes = {}, rest = {};
+/// The same without the masses, in as little memory as it takes.
+struct PackedChange {
+    std::array<float, 4> velocity = {}, first_planes = {};
+    std::array<float, 2> rest = {};
 };
+
+/// Bodies of a coloured island whose sums are added up at once: the same for any number of threads.
+constexpr std::size_t kSumPiece = 64;
 
 /// Inverse world inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
 struct alignas(32) InverseInertia {
@@ -179,12 +183,12 @@ struct ColouredIslands {
     // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
     // with, x, and the direction, p.
     std::vector<PackedChange> last_changes, direction;
-    std::vector<std::array<double, 3>> body_sums;  ///< of `bodies`: items of sums
+    std::vector<std::array<double, 3>> body_sums;  ///< of pieces of each island's `bodies`
     RowImpulses<4> last_round;
     RowImpulses<3> last_general;
     RowImpulses<4, RoughEight> round_direction;
     RowImpulses<3, RoughEight> general_direction;
-    std::vector<std::array<Eight, 2>> round_work, general_work;  ///< likewise of each batch
+    std::vector<std::array<double, 2>> round_work, general_work;  ///< sums of each batch
     // Of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions

@@ -63,8 +63,9 @@ class ContactList {
     bool empty() const { return size_ == 0; }
     Contact operator[](std::size_t i) const {
         const Shared& shared = shared_of(i);
-        return {shared.normal, point(i),   separation(i),  shared.a,
-                shared.b,      feature(i), shared.no_seam, shared.no_seam_points};
+        const NoSeam& no_seam = no_seams_[place_of_shared_[i]];
+        return {shared.normal, point(i),   separation(i),     shared.a,
+                shared.b,      feature(i), no_seam.seen_from, no_seam.points};
     }
     /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
     /// little of each point go from run to run.
@@ -87,8 +88,8 @@ class ContactList {
     std::pair<BodyId, BodyId> pair(std::size_t i) const { return {shared_of(i).a, shared_of(i).b}; }
     /// The pair's Contact::no_seam, if contacts [begin, end) are all the points that it is of.
     unsigned no_seam(std::size_t begin, std::size_t end) const {
-        const Shared& shared = shared_of(begin);
-        return shared.no_seam_points == end - begin ? shared.no_seam : 0u;
+        const NoSeam& no_seam = no_seams_[place_of_shared_[begin]];
+        return no_seam.points == end - begin ? no_seam.seen_from : 0u;
     }
     const PackedVec4& normal(std::size_t i) const { return shared_of(i).normal; }
     Vec4 point(std::size_t i) const {
@@ -114,6 +115,7 @@ class ContactList {
     void restart() {
         prepare(place_of_shared_, size_);
         prepare(shared_, shared_size_);
+        prepare(no_seams_, shared_size_);
         prepare(further_, size_ - shared_size_);
         size_ = shared_size_ = 0;
     }
@@ -123,7 +125,7 @@ class ContactList {
         if (is_shared) {
             if (further_.size() == size_ - shared_size_) further_.emplace_back();
         } else {
-            if (shared_.size() == shared_size_) shared_.emplace_back();
+            if (shared_.size() == shared_size_) shared_.emplace_back(), no_seams_.emplace_back();
             ++shared_size_;
         }
         write(contact, {size_++, shared_size_ - 1}, !is_shared);
@@ -174,6 +176,9 @@ class ContactList {
             shared_, [](const Start& start) { return start.shared; },
             [](Shared& shared, const Start& way) { shared.first += place_of(way.point); });
         move(
+            no_seams_, [](const Start& start) { return start.shared; },
+            [](NoSeam&, const Start&) {});
+        move(
             further_, [](const Start& start) { return start.point - start.shared; },
             [](Further&, const Start&) {});
         for (std::size_t i = 0; i < all.size(); ++i) write(all[i].by, starts_[i]);
@@ -187,7 +192,10 @@ class ContactList {
         std::uint32_t feature;
         BodyId a, b;
         std::uint32_t first;  ///< its place
-        std::uint8_t no_seam, no_seam_points;
+    };
+    /// See Contact.
+    struct NoSeam {
+        std::uint8_t seen_from = 0, points = 0;
     };
     /// A point that is not the first.
     struct Further {
@@ -233,6 +241,7 @@ class ContactList {
     void grow_to(Start end, double ratio) {
         grow(place_of_shared_, size_, end.point, ratio);
         grow(shared_, shared_size_, end.shared, ratio);
+        grow(no_seams_, shared_size_, end.shared, ratio);
         grow(further_, size_ - shared_size_, end.point - end.shared, ratio);
     }
 
@@ -260,8 +269,8 @@ class ContactList {
         place_of_shared_[at.point] = place_of(at.shared);
         Shared& shared = shared_[at.shared];
         if (is_first) {
-            shared = {c.normal,           c.point,   c.separation,    c.feature, c.a, c.b,
-                      place_of(at.point), c.no_seam, c.no_seam_points};
+            shared = {c.normal, c.point, c.separation, c.feature, c.a, c.b, place_of(at.point)};
+            no_seams_[at.shared] = {c.no_seam, c.no_seam_points};
             return;
         }
         Further& further = further_[further_at(at.point)];
@@ -275,6 +284,7 @@ class ContactList {
     std::size_t size_ = 0, shared_size_ = 0;
     std::vector<std::uint32_t> place_of_shared_;  ///< of every contact
     std::vector<Shared> shared_;
+    std::vector<NoSeam> no_seams_;  ///< of each of them
     std::vector<Further> further_;
     std::vector<Start> starts_;
     std::vector<Move> moves_;
