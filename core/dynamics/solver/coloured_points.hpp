@@ -62,7 +62,8 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     put(c.normal, points.normal[lane]);
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
-    put(v - along * c.normal, points.velocity[lane]);
+    put(v - along * c.normal + slip_by_turning(simulation, step, c, stage.cause),
+        points.velocity[lane]);
     put(impulse.tangent() / stage.mass_unit, points.impulse[lane]);
     put({targets.solve - along, targets.relax - along, targets.keep,
          impulse.normal / stage.mass_unit},
@@ -139,7 +140,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     put(contact.normal, pairs.normal[lane]);
     if (simulation.type_of(a).movable) put(r_a, pairs.centre_a[lane]);
     if (simulation.type_of(b).movable) put(r_b, pairs.centre_b[lane]);
-    put(v, pairs.velocity[lane]);
+    put(v + slip_by_turning(simulation, step, contact, stage.cause), pairs.velocity[lane]);
     put(turning, lane, pairs.turning);
     pairs.rounding.lane[lane] =
         static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);

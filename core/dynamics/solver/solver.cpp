@@ -62,7 +62,8 @@ RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& ro
     row.normal_impulse = normal;
     RowChange changes{change};
     if (row.friction > 0) {
-        const Vec4 tangent = friction_impulse(row, v + change * row.normal_response);
+        const Vec4 tangent =
+            friction_impulse(row, v + change * row.normal_response + row.slip_by_turning);
         changes.tangent = tangent - row.tangent_impulse;
         row.tangent_impulse = tangent;
     }
@@ -163,7 +164,7 @@ void start_rows(const Simulation& simulation, StepData& step, std::size_t island
 /// The movable bodies of an island that is not coloured, each once.
 std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
                                   std::size_t island) {
-    BodyId* const first = step.blow_bodies.data() + 2 * step.islands.first_row[island];
+    BodyId* const first = step.bodies_of_rows.data() + 2 * step.islands.first_row[island];
     BodyId* end = first;
     for (const ContactRow& row : rows_of(step, island))
         for (const BodyId id : {row.a, row.b})
@@ -186,13 +187,14 @@ bool leave_whirling(const Simulation& simulation, const StepData& step,
     return any;
 }
 
-/// What the rows' impulses times their velocities are, less those times the relaxation's targets.
+/// What the rows' impulses times their velocities are, less those times the pass's targets.
+template <NormalPass ContactRow::*kPass>
 double work_of(const Simulation& simulation, StepData& step, std::span<const ContactRow> rows) {
     double sum = 0;
     for (const ContactRow& row : rows) {
         const Vec4 v =
             relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-        sum += row.normal_impulse * (row.normal.dot(v) - row.relax.target);
+        sum += row.normal_impulse * (row.normal.dot(v) - (row.*kPass).target);
         sum += row.tangent_impulse.dot(v);
         if (simulation.needs.rolling)
             sum += dot(angular_impulse_of(row, rolling_row_of(step, row)),
@@ -201,18 +203,10 @@ double work_of(const Simulation& simulation, StepData& step, std::span<const Con
     return sum;
 }
 
-/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
-/// @return whether they were
-bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Overlap overlap = overlap_of(simulation, step, island);
-    if (!overlap.any) return false;
-    const std::span<ContactRow> rows = rows_of(step, island);
-    const double with = work_of(simulation, step, rows);
-    apply_part(simulation, step, rows, -1);
-    const double without = work_of(simulation, step, rows);
-    const LoadWork load = {without, with - without};
-    const bool is_gain = load.is_gain(overlap.weight);
-    const double part = is_gain ? load.best_part() : 1;
+/// Of the rows' impulses, which have been applied.
+void leave_part(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
+                double part) {
+    apply_part(simulation, step, rows, part - 1);
     for (ContactRow& row : rows) {
         row.normal_impulse *= part;
         row.tangent_impulse *= part;
@@ -221,8 +215,43 @@ bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) 
         rolling.rolling.impulse *= part;
         rolling.twisting.impulse *= part;
     }
+}
+
+/// What gravity gives an island's bodies in a sub-step from rest [J].
+double energy_of_fall(const Simulation& simulation, StepData& step, std::size_t island) {
+    double mass = 0;
+    for (const BodyId id : bodies_of(simulation, step, island))
+        if (simulation.type_of(id).falls) mass += simulation.type_of(id).mass;
+    return 0.5 * mass * (step.h * simulation.settings.gravity).squaredNorm();
+}
+
+/// The impulses that the load starts from; see kRecalledWeight.
+void apply_recalled(const Simulation& simulation, StepData& step, std::size_t island) {
+    const std::span<ContactRow> rows = rows_of(step, island);
+    if (simulation.settings.solver != Solver::kImpulse)
+        return apply_part(simulation, step, rows, 1);
+    const double before = work_of<&ContactRow::solve>(simulation, step, rows);
     apply_part(simulation, step, rows, 1);
-    return is_gain;
+    const double after = work_of<&ContactRow::solve>(simulation, step, rows);
+    const LoadWork load = {before, after - before};
+    if (0.5 * load.energy > kRecalledWeight * energy_of_fall(simulation, step, island))
+        leave_part(simulation, step, rows, load.best_part());
+}
+
+/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
+/// @return whether they were
+bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) {
+    const Overlap overlap = overlap_of(simulation, step, island);
+    if (!overlap.any) return false;
+    const std::span<ContactRow> rows = rows_of(step, island);
+    const double with = work_of<&ContactRow::relax>(simulation, step, rows);
+    apply_part(simulation, step, rows, -1);
+    const double without = work_of<&ContactRow::relax>(simulation, step, rows);
+    apply_part(simulation, step, rows, 1);
+    const LoadWork load = {without, with - without};
+    if (!load.is_gain(overlap.weight)) return false;
+    leave_part(simulation, step, rows, load.best_part());
+    return true;
 }
 
 void keep_hits(StepData& step, std::size_t island) {
@@ -328,7 +357,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     step.pushed[island] = is_pushed(simulation, step, island);
     start_rows(simulation, step, island, Cause::kLoad);
     const std::span<ContactRow> rows = rows_of(step, island);
-    apply_part(simulation, step, rows, 1);  // the recalled ones
+    apply_recalled(simulation, step, island);
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, rows.size()));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);

@@ -115,6 +115,25 @@ ContactTargets PairTargets::of_overlap(double s) const {
     return targets;
 }
 
+Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const Contact& contact,
+                     Cause cause) {
+    if (cause == Cause::kBlow || !simulation.needs.turning) return Vec4::Zero();
+    const Bivector &of_a = step.angular_velocity[contact.a],
+                   &of_b = step.angular_velocity[contact.b];
+    const bool a_turns = is_driven(simulation, contact.a),
+               b_turns = is_driven(simulation, contact.b);
+    const bool is_a = a_turns != b_turns ? a_turns : dot(of_a, of_a) <= dot(of_b, of_b);
+    const Bivector& w = is_a ? of_a : of_b;
+    if (w == Bivector{}) return Vec4::Zero();
+    // Before gravity, which the load takes back along the normal.
+    const double kicks = simulation.type_of(contact.b).falls - simulation.type_of(contact.a).falls;
+    const Vec4 u = step.velocity[contact.b] - step.velocity[contact.a] -
+                   kicks * step.h * simulation.settings.gravity;
+    const Vec4& n = contact.normal;
+    const Vec4 slip = -0.5 * step.h * velocity_at(w, u);
+    return slip - n.dot(slip) * n;
+}
+
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
     if (simulation.settings.solver != Solver::kImpulse || !step.islands.held[island]) return false;
     for (const std::uint32_t n : step.islands.runs_in(island)) {

@@ -63,6 +63,14 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
            velocity_at(step.angular_velocity[a], r_a);
 }
 
+/// What the slip of a load's contact, of b against a [m/s], has beyond that of the velocities in
+/// the middle of the sub-step: bodies go straight on with these until the middle of the next one,
+/// but a surface that turns with w goes along the chord of its way, as if it moved by (h/2) w.u
+/// more, where u is how the other body moves against it. Without, what stands on a turntable comes
+/// out by (w h)^2/2 of its distance from the axis in every sub-step.
+Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const Contact& contact,
+                     Cause cause);
+
 /// Whether any contact of the island overlaps by more than is left alone, and some body is held: a
 /// push of Solver::kImpulse then follows the load, with which bodies move, and which is given back
 /// afterwards. So it moves bodies without impulses, which changes the angular momentum of those

@@ -27,20 +27,25 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        const auto size = islands.contacts[island];
-        if (fits && size >= (islands.held[island] ? coloured_from_.held : coloured_from_.free)) {
+        if (fits && is_coloured(islands, island)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {
             islands.first_row[island] = rows;
-            rows += size;
+            rows += islands.contacts[island];
         }
     }
     colouring_.end(simulation, step);
     resize_anew(step.rows, rows);
     if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
-    if (simulation.needs.restitution || simulation.needs.friction)
-        resize_anew(step.blow_bodies, 2 * std::size_t{rows});
+    resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});
+}
+
+bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {
+    const std::uint32_t contacts = islands.contacts[island];
+    if (!islands.held[island]) return contacts >= coloured_from_.free;
+    const bool unequal = most_mass_[island] > kUnequalMasses * least_mass_[island];
+    return contacts >= coloured_from_.held || (unequal && contacts >= coloured_from_.unequal);
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
@@ -72,11 +77,19 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     Islands& islands = step.islands;
     islands.held.assign(count, 0);
     islands.contacts.assign(count, 0);
+    least_mass_.assign(count, std::numeric_limits<double>::infinity());
+    most_mass_.assign(count, 0);
     for (std::size_t i = 0; i < member_.size(); ++i) {
         const ContactList::Run run = contacts.nth_run(i);
         const std::uint32_t island = number_[member_[i]];
         if (!movable(run.a) || !movable(run.b)) islands.held[island] = 1;
         islands.contacts[island] += static_cast<std::uint32_t>(run.size());
+        for (const BodyId id : {run.a, run.b}) {
+            const TypeProperties& type = simulation.type_of(id);
+            if (!(type.inverse_mass > 0)) continue;
+            least_mass_[island] = std::min(least_mass_[island], type.mass);
+            most_mass_[island] = std::max(most_mass_[island], type.mass);
+        }
     }
     resize_anew(islands.runs, member_.size());
     counting_sort(

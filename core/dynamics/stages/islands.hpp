@@ -8,11 +8,13 @@ namespace tesserae {
 
 /// Contacts from which on an island is coloured.
 struct ColouredFrom {
-    std::uint32_t held = kColouredFrom;      ///< where a body touches one that contacts do not move
+    std::uint32_t held = kColouredFrom;  ///< where a body touches one that contacts do not move
+    std::uint32_t unequal = 1;           ///< there, if masses differ by more than kUnequalMasses
     std::uint32_t free = kFreeColouredFrom;  ///< elsewhere
 
     ColouredFrom() = default;
-    ColouredFrom(std::uint32_t both) : held(both), free(both) {}  // NOLINT: meant to convert
+    ColouredFrom(std::uint32_t both)
+        : held(both), unequal(both), free(both) {}  // NOLINT: meant to convert
 };
 
 /// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.
@@ -28,11 +30,13 @@ class IslandBuilder {
   private:
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
+    bool is_coloured(const Islands& islands, std::size_t island) const;
     void sort_by_island(const Simulation& simulation, StepData& step);
 
     std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
     std::vector<BodyId> member_;  ///< of every run of contacts: a movable body, then its root
-    std::vector<std::uint32_t> number_;  ///< of the island whose root the body is
+    std::vector<std::uint32_t> number_;           ///< of the island whose root the body is
+    std::vector<double> least_mass_, most_mass_;  ///< of every island's bodies [kg]
     Colouring colouring_;
 };
 

@@ -27,7 +27,7 @@ struct PhysicsSettings {
     /// Sweeps of the contact solver over an island, a sub-step, at most; see effort_of_load() for
     /// islands of few contacts.
     int iterations = 14;
-    double tolerance = 1e-4;  ///< residual [m/s] below which its sweeps end; 0: all of them
+    double tolerance = 1e-6;  ///< residual [m/s] below which its sweeps end; 0: all of them
     Solver solver = Solver::kImpulse;
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
     bool sleeping = false;  ///< islands at rest are left out until something touches them

