@@ -143,10 +143,10 @@ constexpr double kMostConjugateFriction = 1;
 constexpr std::uint32_t kColouredFrom = 20;
 
 /// Factor by which masses of an island's bodies differ that is coloured though it has few contacts,
-/// if it is held, usual 2.5: one by one sweeps hardly get anywhere where heavy bodies rest on light
-/// ones (a box of 1000 masses, set down on one from 1 mm, then squeezes it out; 14 planks slow a
-/// ball of three masses that rolls over them by 5 %). More, and more of these are solved worse;
-/// less, and lanes are empty.
+/// if it is held and goes along conjugate directions, usual 2.5: one by one sweeps hardly get
+/// anywhere where heavy bodies rest on light ones (a box of 1000 masses, set down on one from 1 mm,
+/// then squeezes it out; 14 planks slow a ball of three masses that rolls over them by 5 %). More,
+/// and more of these are solved worse; less, and lanes are empty.
 constexpr double kUnequalMasses = 2.5;
 
 /// The same where nothing is held: such an island keeps its momentum, in double to 1e-15 of it a

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/counting_sort.hpp"
+#include "core/dynamics/solver/conjugate.hpp"
 #include "core/dynamics/state/room.hpp"
 #include "core/error.hpp"
 
@@ -24,10 +25,10 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
-    const bool fits = fit_floats(simulation.types);
+    const bool fits = fit_floats(simulation.types), conjugates = has_conjugates(simulation);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        if (fits && is_coloured(islands, island)) {
+        if (fits && is_coloured(islands, island, conjugates)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {
@@ -41,11 +42,11 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});
 }
 
-bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {
+bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island, bool conjugates) const {
     const std::uint32_t contacts = islands.contacts[island];
     if (!islands.held[island]) return contacts >= coloured_from_.free;
-    const bool unequal = most_mass_[island] > kUnequalMasses * least_mass_[island];
-    return contacts >= coloured_from_.held || (unequal && contacts >= coloured_from_.unequal);
+    const bool unequal = conjugates && most_mass_[island] > kUnequalMasses * least_mass_[island];
+    return contacts >= (unequal ? coloured_from_.unequal : coloured_from_.held);
 }
 
 void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {

@@ -8,8 +8,8 @@ namespace tesserae {
 
 /// Contacts from which on an island is coloured.
 struct ColouredFrom {
-    std::uint32_t held = kColouredFrom;  ///< where a body touches one that contacts do not move
-    std::uint32_t unequal = 1;           ///< there, if masses differ by more than kUnequalMasses
+    std::uint32_t held = kColouredFrom;      ///< where a body touches one that contacts do not move
+    std::uint32_t unequal = 1;               ///< there, if masses differ so much: kUnequalMasses
     std::uint32_t free = kFreeColouredFrom;  ///< elsewhere
 
     ColouredFrom() = default;
@@ -30,7 +30,7 @@ class IslandBuilder {
   private:
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
-    bool is_coloured(const Islands& islands, std::size_t island) const;
+    bool is_coloured(const Islands& islands, std::size_t island, bool conjugates) const;
     void sort_by_island(const Simulation& simulation, StepData& step);
 
     std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
