@@ -81,8 +81,6 @@ TEST(Islands, AreTheConnectedPartsNumberedByTheirLowestBody) {
     }
 }
 
-/// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
-/// to eight points.
 /// A row of spheres; the first one touches a fixed one, or not.
 TEST(Islands, AreColouredFromFewerContactsWhereABodyIsHeld) {
     for (const bool held : {true, false})
@@ -110,6 +108,36 @@ TEST(Islands, AreColouredFromFewerContactsWhereABodyIsHeld) {
         }
 }
 
+/// A sphere on another on a fixed one, or on one that is free.
+TEST(Islands, OfUnequalMassesAreColouredWhereTheyGoAlongConjugateDirections) {
+    for (const double friction : {0.5, 2.0})
+        for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
+            for (const bool held : {true, false})
+                for (const double mass : {0.3, 0.5, 2.0, 3.0}) {
+                    Bodies bodies;
+                    BodyType first = sphere_type(1);
+                    first.fixed_position = first.fixed_rotation = held;
+                    add(bodies, first);
+                    add(bodies, sphere_type(1));
+                    add(bodies, sphere_type(1, mass, friction));
+                    std::vector<Contact> contacts(2);
+                    contacts[0].b = contacts[1].a = 1, contacts[1].b = 2;
+                    PhysicsSettings settings;
+                    settings.solver = solver;
+                    const Simulation simulation = make_simulation(bodies, settings);
+                    StepData step;
+                    step.contacts = ContactList(contacts);
+                    IslandBuilder().build(simulation, step);
+                    ASSERT_EQ(step.islands.size(), 1u);
+                    EXPECT_EQ(step.islands.is_coloured(0),
+                              held && std::abs(std::log(mass)) > std::log(kUnequalMasses) &&
+                                  friction <= 1 && solver == Solver::kImpulse)
+                        << mass << " " << held;
+                }
+}
+
+/// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
+/// to eight points.
 TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
     std::mt19937_64 engine(7);
     Bodies bodies;
