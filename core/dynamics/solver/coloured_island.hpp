@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -70,9 +69,9 @@ class ColouredIsland {
     const ColouredStage& stage() const { return stage_; }
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
     /// Of pieces of them, see kSumPiece.
-    std::span<std::array<double, 3>> body_sums() const {
+    std::span<BodySums> body_sums() const {
         const auto [begin, end] = bodies();
-        std::array<double, 3>* const first = all_.body_sums.data() + begin / kSumPiece + place_;
+        BodySums* const first = all_.body_sums.data() + begin / kSumPiece + place_;
         return {first, (end - begin + kSumPiece - 1) / kSumPiece};
     }
 

@@ -28,9 +28,6 @@ namespace tesserae {
 /// has its full share of, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation);
 
-/// Of some bodies.
-using BodySums = std::array<double, 3>;
-
 /// The energies of what the impulses that the load starts from have changed, and of what gravity
 /// has.
 BodySums weigh_recalled(const ColouredStage& stage, Range bodies);

@@ -43,6 +43,7 @@ struct PackedChange {
 
 /// Bodies of a coloured island whose sums are added up at once: the same for any number of threads.
 constexpr std::size_t kSumPiece = 64;
+using BodySums = std::array<double, 3>;
 
 /// Inverse world inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
 struct alignas(32) InverseInertia {
@@ -183,7 +184,7 @@ struct ColouredIslands {
     // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
     // with, x, and the direction, p.
     std::vector<PackedChange> last_changes, direction;
-    std::vector<std::array<double, 3>> body_sums;  ///< of pieces of each island's `bodies`
+    std::vector<BodySums> body_sums;  ///< of pieces of each island's `bodies`
     RowImpulses<4> last_round;
     RowImpulses<3> last_general;
     RowImpulses<4, RoughEight> round_direction;

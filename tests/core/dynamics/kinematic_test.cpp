@@ -135,8 +135,8 @@ TEST(Turntable, CarriesWhatLiesOnIt) {
     EXPECT_EQ(world.bodies().angular_velocity[0], spin);
 }
 
-/// The world after a turn of an angle of 20 of a plate in a plane across gravity, with bodies on it
-/// that go with it.
+/// A plate that turns in a plane across gravity, at a given speed or freely, and bodies on it that
+/// go with it.
 struct Carousel {
     Bodies bodies;
     Bivector spin;
@@ -152,6 +152,7 @@ struct Carousel {
     BodyId ride(const BodyType& type, const Vec4& place) {
         return add(bodies, with_surface(type, 0.8), place, velocity_at(spin, place), spin);
     }
+    /// After some three turns: 20 rad.
     World turned(const PhysicsSettings& settings) const {
         World world(bodies, settings);
         for (int i = 0; i < 20 / turning * 240; ++i) world.step(kStep);
@@ -167,14 +168,12 @@ TEST(Turntable, KeepsWhatStandsOnItWhereItIs) {
             for (const double speed : {1.0, 3.0}) {
                 Carousel carousel(speed, driven);
                 carousel.ride(box_type({0.3, 0.3, 0.3, 0.3}, 3), {0.8, 0.15, 0, 0});
-                carousel.ride(capsule_type(0.1, 0.3, 2), {0, 0.25, 0.2, -0.6});
                 for (int i = 0; i < 3; ++i)
                     carousel.ride(box_type({0.5, 0.1, 0.4, 0.3}, 1), {-0.5, 0.05 + 0.1 * i, 0, 0});
                 PhysicsSettings settings;
                 settings.solver = solver;
                 const World world = carousel.turned(settings);
                 for (BodyId id = 1; id < carousel.bodies.size(); ++id) {
-                    if (id == 2) continue;  // stands on one point
                     const Vec4 &was = carousel.bodies.position[id],
                                &is = world.bodies().position[id];
                     EXPECT_NEAR(std::hypot(is[0], is[3]), std::hypot(was[0], was[3]), 2e-3)
@@ -195,7 +194,7 @@ TEST(Turntable, LetsABallRollInCircles) {
     turns.xw = slow;
     const Vec4 velocity = velocity_at(turns, place);
     const Vec4 surface = velocity_at(carousel.spin, place);
-    // At -R y its surface moves with v + w.(-R y), w = (y ^ u): u of size (v - surface) / R.
+    // At -R y its surface moves with v + w.(-R y), where y ^ u takes y to u.
     const Bivector rolling = (1 / radius) * wedge(Vec4::UnitY(), velocity - surface);
     const BodyId id = add(carousel.bodies, ball, place, velocity, rolling);
     const World world = carousel.turned(PhysicsSettings{});

@@ -117,6 +117,12 @@ double mean_speed(const World& world) {
     return sum / static_cast<double>(world.bodies().size());
 }
 
+double fastest_of(const World& world) {
+    double fastest = 0;
+    for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
+    return fastest;
+}
+
 /// Ten sweeps left them at 60 mm/s for ever.
 /// From starts that differ by nanometres: which of them come to rest is chance where sweeps are too
 /// few. Springs let boards sink in, take longer to end, and tremble at 4 sub-steps of 2 sweeps (by
@@ -156,9 +162,7 @@ TEST(Rest, OfSmallTowers) {
                          0.05 * std::sin(4 * i)});
             World world(bodies, PhysicsSettings{});
             run(world, 1200);
-            double fastest = 0;
-            for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
-            EXPECT_LT(fastest, 2e-5) << height << " " << gap;
+            EXPECT_LT(fastest_of(world), 2e-5) << height << " " << gap;
         }
 }
 
@@ -171,9 +175,7 @@ TEST(Rest, OfTallTowersOfSmallCubes) {
                 add_box(bodies, Vec4::Constant(side), {0, (i + 0.5) * side, 0, 0});
             World world(bodies, PhysicsSettings{});
             run(world, 2400);
-            double fastest = 0;
-            for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
-            EXPECT_LT(fastest, 5e-4) << height << " of " << side;
+            EXPECT_LT(fastest_of(world), 5e-4) << height << " of " << side;
         }
 }
 
