@@ -39,7 +39,6 @@ namespace {
 /// sub-steps' own cost.
 const std::vector<Knobs> kWays = {
     {},
-    {.solver = Solver::kImpulse, .substeps = 1, .iterations = 10, .tolerance = 0},
     {.solver = Solver::kImpulse, .substeps = 1, .iterations = 5, .tolerance = 0},
     {.solver = Solver::kImpulse, .substeps = 4, .iterations = 2, .tolerance = 0},
     {.solver = Solver::kImpulse, .substeps = 8, .iterations = 1, .tolerance = 0},

@@ -31,7 +31,7 @@ LARGEST_RESIDUAL = np.log(1.5)
 DOUBT = "doubt about the converged run"
 # Noise by construction: not ranked.
 STATISTICS = ("components against Gauss", "speeds against Maxwell", DOUBT)
-DEFAULT = ("midpoint", "impulse", 1, 14)
+DEFAULT = ("midpoint", "impulse", 1, 10)
 DEFAULT_STEPS = 240
 
 Point = collections.namedtuple("Point", "steps error time row")
@@ -93,7 +93,7 @@ def style_of(way):
     integrator, solver, substeps, iterations = way
     palette = {1: "Blues", 4: "Purples", 8: "Greys"} if solver == "impulse" else {
         1: "Reds", 2: "Oranges", 4: "YlOrBr", 8: "RdPu"}
-    depth = {5: 0.4, 10: 0.6, 14: 0.8, 40: 1.0}.get(iterations, 0.7)
+    depth = {5: 0.4, 10: 0.7, 40: 1.0}.get(iterations, 0.7)
     color = "tab:green" if integrator == "euler" else plt.get_cmap(palette[substeps])(depth)
     return {"color": color, "marker": "o^sDvP"[[1, 2, 4, 8].index(substeps)],
             "ls": "-" if solver == "impulse" else "--", "ms": 4.5, "lw": 1.2}
@@ -220,7 +220,7 @@ def report_ways(head, tree, folder):
                       textcoords="offset points")
     axes.step([r[2] for r in front], [r[3] for r in front], where="post", color="gold", lw=6,
               alpha=0.5, zorder=0, label="Pareto front")
-    axes.set_xlabel("run time over the default's (impulse, 1 x 14 at most, 240 steps a second)")
+    axes.set_xlabel("run time over the default's (impulse, 1 x 10 at most, 240 steps a second)")
     axes.set_ylabel("error over the default's")
     axes.set_title(f"Geometric means over {count} experiments; the number is the most steps a second",
                    fontsize=10)

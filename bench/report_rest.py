@@ -29,7 +29,7 @@ STYLES = {
     "tesserae soft, sub-steps of 1": ("tab:olive", "P", "--"),
     "tesserae soft, sub-steps of 2": ("tab:green", "X", "--"),
 }
-DEFAULT = ("tesserae impulse", 240, 1, 14)
+DEFAULT = ("tesserae impulse", 240, 1, 10)
 # What a point's number counts along its curve.
 COUNTED = {"tesserae impulse, by steps": "steps_per_second"}
 

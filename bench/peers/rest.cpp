@@ -45,7 +45,7 @@ Way way_of_tesserae(const std::string& curve, const PhysicsSettings& settings) {
 std::vector<Way> all_ways() {
     std::vector<Way> ways;
     const double steps = 1 / kPeerStep;
-    for (const int n : {5, 10, PhysicsSettings{}.iterations, 20, 40, 80}) {
+    for (const int n : {5, PhysicsSettings{}.iterations, 20, 40, 80}) {
         ways.push_back({"bullet", 3, steps, 1, n, 0,
                         [n](const PeerScene& scene) { return make_bullet(scene, n); }});
         if (n < 80)

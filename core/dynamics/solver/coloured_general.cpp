@@ -104,6 +104,7 @@ template <class F>
                                                   F& left) {
     const F mu = lane.load(friction.friction);
     const std::array<F, 21> response = load_all(lane, friction.response);
+    F squared_left{};
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
         const GeneralFriction& row = pair.coloured.general_friction[k];
@@ -120,8 +121,10 @@ template <class F>
         add(seen, of.impulse.across);
         add_product(response, seen, of.motion.across);
         if (pair.sweep.measured)
-            left = larger(left, velocity_left(lane.load(row.slide_mass), change));
+            squared_left =
+                larger(squared_left, squared_velocity_left(lane.load(row.slide_mass), change));
     }
+    if (pair.sweep.measured) left = larger(left, square_root(squared_left));
 }
 
 /// Rolling or twisting of all points.
@@ -236,10 +239,11 @@ double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, La
 
 double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
     const ColouredIslands& coloured = stage.step.coloured;
-    if (coloured.rolling)
+    const bool pushes = sweep.pass == Pass::kPush;
+    if (coloured.rolling && !pushes)
         return coloured.turns_unevenly ? sweep_all<true, true, true>(stage, batches, sweep, lanes)
                                        : sweep_all<true, true, false>(stage, batches, sweep, lanes);
-    if (coloured.friction)
+    if (coloured.friction && !pushes)
         return coloured.turns_unevenly
                    ? sweep_all<true, false, true>(stage, batches, sweep, lanes)
                    : sweep_all<true, false, false>(stage, batches, sweep, lanes);

@@ -201,7 +201,7 @@ template <class F>
 [[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, const NormalRow& row,
                                              const Eight& relax_target, const Eight* keep, F v,
                                              Pass pass, Eight& impulse) {
-    const bool relaxes = pass == Pass::kRelax;
+    const bool relaxes = pass != Pass::kSolve;
     const F old = lane.load(impulse);
     const F target = lane.load(relaxes ? relax_target : row.target);
     F change = lane.load(row.mass) * (target - v);
@@ -225,9 +225,11 @@ template <class F>
     const F mass = lane.load(row.mass);
     return mass > F{} ? magnitude(change) / mass : F{};
 }
+/// Its square.
 template <class F>
-[[gnu::always_inline]] inline F velocity_left(F mass, const LaneVec4<F>& change) {
-    return mass > F{} ? square_root(dot(change, change)) / mass : F{};
+[[gnu::always_inline]] inline F squared_velocity_left(F mass, const LaneVec4<F>& change) {
+    const LaneVec4<F> left = (mass > F{} ? (F{} + 1.0f) / mass : F{}) * change;
+    return dot(left, left);
 }
 
 /// Calls work(Lane<F>, batch) for all lanes of the batches.

@@ -154,8 +154,8 @@ template <bool kFriction, bool kRolling, class F>
     if (!sweep.measured) return F{};
     F left = velocity_left(lane, row.along, change);
     if constexpr (kFriction)
-        left = larger(
-            left, velocity_left(lane.load(coloured.round_friction[batch].mass), tangent_change));
+        left = larger(left, square_root(squared_velocity_left(
+                                lane.load(coloured.round_friction[batch].mass), tangent_change)));
     return left;
 }
 
@@ -206,9 +206,10 @@ void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes
 
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
     const ColouredIslands& coloured = stage.step.coloured;
-    if (coloured.rolling) return sweep_all<true, true>(stage, batches, sweep, lanes);
-    return coloured.friction ? sweep_all<true, false>(stage, batches, sweep, lanes)
-                             : sweep_all<false, false>(stage, batches, sweep, lanes);
+    const bool pushes = sweep.pass == Pass::kPush;
+    if (coloured.rolling && !pushes) return sweep_all<true, true>(stage, batches, sweep, lanes);
+    return coloured.friction && !pushes ? sweep_all<true, false>(stage, batches, sweep, lanes)
+                                        : sweep_all<false, false>(stage, batches, sweep, lanes);
 }
 
 void take_recalled_round(const ColouredStage& stage, BatchRange batches) {

@@ -51,7 +51,7 @@ struct RowChange {
 /// The normal first and then friction, so that no contact ends with more of it than its normal
 /// impulse allows; what the normal impulse does to the slip is known from the row, so that the
 /// bodies' velocities are read and written once.
-template <NormalPass ContactRow::*kPass, bool kTurning>
+template <NormalPass ContactRow::*kPass, bool kTurning, bool kFriction>
 RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
     const NormalPass& pass = row.*kPass;
     const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
@@ -61,7 +61,7 @@ RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& ro
     if (change == 0 && normal == 0) return {};  // apart, and friction is 0 too
     row.normal_impulse = normal;
     RowChange changes{change};
-    if (row.friction > 0) {
+    if (kFriction && row.friction > 0) {
         const Vec4 tangent =
             friction_impulse(row, v + change * row.normal_response + row.slip_by_turning);
         changes.tangent = tangent - row.tangent_impulse;
@@ -83,13 +83,13 @@ RollingRow& rolling_row_of(StepData& step, const ContactRow& row) {
 }
 
 /// @return the largest velocity_left() if it is measured, else 0
-template <NormalPass ContactRow::*kPass, bool kTurning, bool kRolling>
+template <NormalPass ContactRow::*kPass, bool kTurning, bool kFriction, bool kRolling>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
     double residual = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
-        const RowChange change = solve_row<kPass, kTurning>(simulation, step, row);
+        const RowChange change = solve_row<kPass, kTurning, kFriction>(simulation, step, row);
         if constexpr (kRolling) solve_rolling_row(simulation, step, row, rolling_row_of(step, row));
         if (sweep.measured) residual = std::max(residual, velocity_left(row, change));
     }
@@ -100,10 +100,17 @@ template <bool kTurning, bool kRolling>
 double run_pass(const Simulation& simulation, StepData& step, std::span<ContactRow> rows, Pass pass,
                 const Effort& effort) {
     return iterate(pass, effort, [&](Sweep sweep) {
-        return pass == Pass::kSolve ? sweep_rows<&ContactRow::solve, kTurning, kRolling>(
-                                          simulation, step, rows, sweep)
-                                    : sweep_rows<&ContactRow::relax, kTurning, kRolling>(
-                                          simulation, step, rows, sweep);
+        switch (pass) {
+            case Pass::kSolve:
+                return sweep_rows<&ContactRow::solve, kTurning, true, kRolling>(simulation, step,
+                                                                                rows, sweep);
+            case Pass::kRelax:
+                return sweep_rows<&ContactRow::relax, kTurning, true, kRolling>(simulation, step,
+                                                                                rows, sweep);
+            default:
+                return sweep_rows<&ContactRow::relax, kTurning, false, false>(simulation, step,
+                                                                              rows, sweep);
+        }
     });
 }
 
@@ -195,7 +202,7 @@ double work_of(const Simulation& simulation, StepData& step, std::span<const Con
         const Vec4 v =
             relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
         sum += row.normal_impulse * (row.normal.dot(v) - (row.*kPass).target);
-        sum += row.tangent_impulse.dot(v);
+        sum += row.tangent_impulse.dot(v + row.slip_by_turning);
         if (simulation.needs.rolling)
             sum += dot(angular_impulse_of(row, rolling_row_of(step, row)),
                        step.angular_velocity[row.b] - step.angular_velocity[row.a]);
@@ -362,7 +369,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, rows.size()));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
     if (step.pushed[island])
-        run_pass(simulation, step, rows, Pass::kRelax, effort_of_push(simulation));
+        run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation));
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {

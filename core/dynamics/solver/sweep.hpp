@@ -7,7 +7,8 @@
 
 namespace tesserae {
 
-enum class Pass { kSolve, kRelax };
+/// kPush is kRelax by normal impulses alone: overlap is taken away along the normals.
+enum class Pass { kSolve, kRelax, kPush };
 
 /// How long a pass goes on: until a sweep's residual is at most `enough`, at most so many.
 struct Effort {
@@ -66,7 +67,7 @@ struct LoadWork {
 
 /// One iteration of a pass. Every other one goes through the island backward: a load at one end of
 /// it then reaches the other in one iteration (a tower of ten leans 10 times less). The last one of
-/// kSolve goes forward and that of kRelax backward, which is best for towers listed from the
+/// kSolve goes forward and those of the others backward, which is best for towers listed from the
 /// ground; a pass that ends early ends so too, or what the other direction leaves shakes what rests
 /// (a pyramid of 78 boxes by 1.7 mm/s instead of 0.01).
 struct Sweep {

@@ -26,7 +26,7 @@ struct PhysicsSettings {
     int substeps = 1;  ///< of equal length, a step: pairs are looked for once, contacts in each
     /// Sweeps of the contact solver over an island, a sub-step, at most; see effort_of_load() for
     /// islands of few contacts.
-    int iterations = 14;
+    int iterations = 10;
     double tolerance = 1e-6;  ///< residual [m/s] below which its sweeps end; 0: all of them
     Solver solver = Solver::kImpulse;
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;

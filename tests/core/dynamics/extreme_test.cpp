@@ -111,6 +111,27 @@ TEST(Extreme, ElasticSpheresKeepTheirEnergyForAHundredThousandSteps) {
     EXPECT_NEAR(kinetic_energy(world.bodies()) / start, 1, 1e-3);
 }
 
+/// Friction has no part in it: a box that has sunk in with one edge turns about its centre, and its
+/// edge moves freely.
+TEST(Extreme, OverlapIsPushedOutAlongTheNormals) {
+    for (const std::uint32_t coloured_from : {1u, 1000u}) {
+        BodyType box = box_type(Vec4::Ones());
+        box.friction = 1;
+        const double lean = 0.1, lowest = 0.5 * (std::cos(lean) + std::sin(lean));
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 1));
+        add(bodies, box, {0, lowest - 20 * kSlopOfBox, 0, 0}, Vec4::Zero(), {},
+            exp(Bivector{-lean / 2, 0, 0, 0, 0, 0}));
+        PhysicsSettings settings;
+        settings.gravity.setZero();
+        World world(make_simulation(bodies, settings), ColouredFrom(coloured_from));
+        world.step(1.0 / 240);
+        const Vec4 moved = world.bodies().position[1] - bodies.position[1];
+        EXPECT_GT(moved.y(), 1e-4);
+        EXPECT_LT(std::abs(moved.x()), 0.02 * moved.y());
+    }
+}
+
 TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
     for (const PhysicsSettings& given : {impulse(), soft_settings()}) {
         PhysicsSettings settings = given;

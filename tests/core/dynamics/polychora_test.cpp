@@ -145,7 +145,7 @@ TEST(Polychora, StandOnOneAnother) {
     }
 }
 
-/// They lean by less a sweep than the tolerance, and swayed by 3 mm/s for ever at 10, 14 and 40
+/// They lean by less a sweep than the tolerance, and swayed by 3 mm/s for ever at 10, 20 and 40
 /// iterations, as their loads ended after two sweeps.
 TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
     const BodyType type = regular_type(RegularPolychoron::k120Cell, 0.7);
@@ -155,7 +155,7 @@ TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
         add(bodies, type, {0, (2 * i + 1) * cell.plane.offset, 0, 0}, Vec4::Zero(), {},
             laid_down(cell.plane.normal));
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    for (const int iterations : {10, 14, 20, 40}) {
+    for (const int iterations : {10, 20, 40}) {
         PhysicsSettings settings;
         settings.iterations = iterations;
         World world(bodies, settings);
