@@ -103,6 +103,7 @@ void World::find_contacts(Schedule& schedule) {
         const std::size_t end = (pairs.end + kPairGrain - 1) / kPairGrain;
         return std::span(step_.kept).subspan(first, end - first);
     };
+    step_.drift = drift_of(simulation_, step_);
     const bool keeps = simulation_.needs.manifolds;
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;

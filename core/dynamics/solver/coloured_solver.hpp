@@ -60,14 +60,18 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
                                 const Threads& threads, LaneCount lanes) {
     std::optional<ConjugateDirections<Threads>> directions;
     double residual = 0;
-    for (int i = 0; i < effort.sweeps; ++i) {
+    const auto goes_on = [&](int i) {
+        return i < effort.sweeps || (i < effort.further && directions && directions->holds());
+    };
+    for (int i = 0; goes_on(i); ++i) {
         Sweep sweep = sweep_of(Pass::kSolve, effort, i);
         sweep.adjoint = sweep.backward;
         if (sweep.backward && directions) directions->go_on();
         if (sweep.backward && !directions) directions.emplace(island, threads);
         residual = directions ? sweep_coloured(island, sweep, threads, lanes, *directions)
                               : sweep_coloured(island, sweep, threads, lanes);
-        if (sweep.backward || !directions || i + 1 == effort.sweeps) continue;
+        if (sweep.backward || !directions || i + 1 == std::max(effort.sweeps, effort.further))
+            continue;
         const double left = std::max(residual, directions->find());
         if (i + 1 >= effort.least && left <= effort.enough) break;
     }
@@ -117,6 +121,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
                          const Threads& threads, LaneCount lanes = LaneCount::kEight) {
     const Blow blow = blow_of_island(simulation, step, island);
     if (blow.fastest == 0) return;
+    step.was_hit[island] = 1;
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
     const Effort effort =
@@ -149,7 +154,7 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
-    const Effort effort = effort_of_load(simulation, step.islands.contacts[island]);
+    const Effort effort = effort_of_load(simulation, step, island);
     step.residual[island] = has_conjugates(simulation)
                                 ? iterate_along_conjugates(coloured, effort, threads, lanes)
                                 : iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
@@ -211,8 +216,7 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
                            [&](Range bodies) { take_changes_back(stage, bodies); });
         const auto relax = [&] {
             return iterate_coloured(coloured, Pass::kRelax,
-                                    effort_of_load(simulation, step.islands.contacts[island]),
-                                    threads, lanes);
+                                    effort_of_load(simulation, step, island), threads, lanes);
         };
         step.residual[island] = relax();
         if (!whirls && end_gain(coloured, threads, overlap_of(simulation, step, island)))

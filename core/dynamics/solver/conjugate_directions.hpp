@@ -55,6 +55,8 @@ class ConjugateDirections {
         slope_ = sums[0];
         return length_ * std::sqrt(fastest);
     }
+    /// Whether the next pair begins along it.
+    bool holds() const { return holds_; }
     /// From there on to the next pair.
     void go_on() {
         last_slope_ = holds_ ? slope_ : 0;

@@ -342,6 +342,7 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
         return solve_coloured_blow(simulation, step, island, OneThread{});
     const Blow blow = blow_of_island(simulation, step, island);
     if (blow.fastest == 0) return;
+    step.was_hit[island] = 1;
     start_rows(simulation, step, island, Cause::kBlow);
     const std::span<ContactRow> rows = rows_of(step, island);
     const Effort effort = effort_of_blow(simulation, rows.size(), blow.fastest);
@@ -366,7 +367,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     const std::span<ContactRow> rows = rows_of(step, island);
     apply_recalled(simulation, step, island);
     step.residual[island] =
-        run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, rows.size()));
+        run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, step, island));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
     if (step.pushed[island])
         run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation));
@@ -380,7 +381,7 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
         const bool whirls = leave_whirling(simulation, step, rows);
         const auto relax = [&] {
             return run_pass(simulation, step, rows, Pass::kRelax,
-                            effort_of_load(simulation, rows.size()));
+                            effort_of_load(simulation, step, island));
         };
         step.residual[island] = relax();
         if (!whirls && end_gain(simulation, step, island)) step.residual[island] = relax();

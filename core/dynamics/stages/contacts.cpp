@@ -3,18 +3,34 @@
 #include <algorithm>
 
 #include "core/contact/find_contacts.hpp"
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/room.hpp"
 #include "core/error.hpp"
 
 namespace tesserae {
 
-double margin_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
+Vec4 drift_of(const Simulation& simulation, const StepData& step) {
+    Vec4 sum = Vec4::Zero();
+    for (BodyId id = 0; id < step.velocity.size(); ++id) {
+        if (!simulation.type_of(id).movable) return Vec4::Zero();
+        sum += step.velocity[id];
+    }
+    return sum / std::max<double>(1, static_cast<double>(step.velocity.size()));
+}
+
+Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
     const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
-    double speed = (step.velocity[b] - step.velocity[a]).norm();
+    const Vec4 &v_a = step.velocity[a], &v_b = step.velocity[b];
+    const double relative = (v_b - v_a).norm();
+    const double fastest = std::max((v_a - step.drift).norm(), (v_b - step.drift).norm());
+    double speed = relative;
     if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
     if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
     if (type_a.falls != type_b.falls) speed += step.h * simulation.settings.gravity.norm();
-    return std::min(type_a.slop, type_b.slop) + step.h * speed;
+    const double slop = std::min(type_a.slop, type_b.slop), margin = slop + step.h * speed;
+    // What would sink in deeper than this is stopped where it touches.
+    const double most = 2 * kDeepest / kSlop * slop;
+    return {margin, margin + std::clamp(step.h * (fastest - relative), 0.0, most)};
 }
 
 double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
@@ -29,7 +45,8 @@ void find_contacts(const Simulation& simulation, const StepData& step, Range pai
                    std::vector<Contact>& list) {
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const BodyPair& pair = step.pairs[i];
-        find_contacts_of(simulation, step, pair, margin_of(simulation, step, pair.a, pair.b), list);
+        find_contacts_of(simulation, step, pair,
+                         margins_of(simulation, step, pair.a, pair.b).if_one_stops, list);
     }
 }
 

@@ -4,12 +4,22 @@
 
 namespace tesserae {
 
-/// Up to what separation [m] a pair's points are found: see find_contacts().
-double margin_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+/// How all bodies move together [m/s]: not at all where contacts do not move some of them.
+Vec4 drift_of(const Simulation& simulation, const StepData& step);
 
-/// Narrow phase of a pair where its bodies are: appends its contacts to a list. With the margin of
-/// margin_of() these are points that can close within one sub-step at the present relative
-/// velocity, and those that are within the allowed overlap of touching.
+/// Up to what separation [m] a pair's points are found: see find_contacts().
+struct Margins {
+    /// Those that can close within one sub-step at the present relative velocity, and those that
+    /// are within the allowed overlap of touching.
+    double as_they_move;
+    /// Those, too, that can close where others stop one of the bodies, at the other one's own speed
+    /// beyond step.drift: bodies that fall one above the other would sink into each other as the
+    /// lower one lands.
+    double if_one_stops;
+};
+Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+
+/// Narrow phase of a pair where its bodies are: appends its contacts to a list.
 /// @return as find_contacts() of two shapes
 double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
                         double margin, std::vector<Contact>& list);

@@ -21,6 +21,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     Islands& islands = step.islands;
     step.residual.resize(islands.size());
     step.has_rows.assign(islands.size(), 0);
+    step.was_hit.assign(islands.size(), 0);
     step.pushed.assign(islands.size(), 0);
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);

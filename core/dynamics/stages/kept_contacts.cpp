@@ -92,18 +92,19 @@ class KeptContacts {
         : simulation_(simulation), step_(step), kept_(kept), spare_(spare), list_(list) {}
 
     /// How far a search for the pair's contacts looks [m], at most.
-    double looks_to(const BodyPair& pair, double margin) const {
-        return std::max(margin, kKeptMargin * slop_of(pair));
+    double looks_to(const BodyPair& pair, const Margins& margins) const {
+        return std::max(margins.if_one_stops, kKeptMargin * slop_of(pair));
     }
 
     /// @param last   what the sub-step before this one kept of the pair, or null
     /// @return how far apart both are at least [m], as far as it is known
-    double find(const BodyPair& pair, double margin,
+    double find(const BodyPair& pair, const Margins& margins,
                 const std::shared_ptr<const KeptManifold>* last) {
         const TypeProperties& type_a = simulation_.type_of(pair.a);
         const TypeProperties& type_b = simulation_.type_of(pair.b);
         const double slack = kDistanceSlack * (type_a.radius + type_b.radius);
-        if (!may_keep(pair, margin))
+        const double margin = margins.if_one_stops;
+        if (!may_keep(pair, margins.as_they_move))
             return find_contacts_of(simulation_, step_, pair, margin, list_) - slack;
         const auto [a, b] = pair;
         if (a != turned_) from_turned_ = to_matrix(step_.rotor[a]), turned_ = a;
@@ -117,7 +118,11 @@ class KeptContacts {
         if (is_known) keep(*last);
         const bool is_kept =
             is_known || (stays && keep_found(pair, {(*last)->offset, (*last)->rotor}, most, apart));
-        if (!is_kept && !keep_found(pair, now, most, apart)) return apart - slack;
+        if (!is_kept && !keep_found(pair, now, most, apart))
+            return (apart - slack > margin
+                        ? apart
+                        : find_contacts_of(simulation_, step_, pair, margin, list_)) -
+                   slack;
         const KeptManifold& m = *kept_[count_ - 1];
         if (m.keeps == Keeps::kNoFace)
             find_contacts_of(simulation_, step_, pair, margin, list_);
@@ -312,11 +317,11 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
     KeptContacts contacts(simulation, step, kept, spare, list);
     for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
         const BodyPair& pair = step.pairs[i];
-        const double margin = margin_of(simulation, step, pair.a, pair.b);
         const auto* const kept_before = kept_of.find(pair);
         double apart = kept_before ? 0 : clearance_of.left(pair);
-        if (!(apart > contacts.looks_to(pair, margin)))
-            apart = contacts.find(pair, margin, kept_before);
+        const Margins margins = margins_of(simulation, step, pair.a, pair.b);
+        if (!(apart > contacts.looks_to(pair, margins)))
+            apart = contacts.find(pair, margins, kept_before);
         clearances.set(i, apart);
     }
     contacts.end();

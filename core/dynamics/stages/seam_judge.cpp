@@ -259,7 +259,8 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     const Placed placed(simulation, step, body);
     double margin = 0;
     for (const Floor& f : floor_)
-        margin = std::max(margin, margin_of(simulation, step, body, f.meeting->other));
+        margin =
+            std::max(margin, margins_of(simulation, step, body, f.meeting->other).as_they_move);
     // A wall's face ends at the floor, into which the body has sunk.
     const TypeProperties& type = simulation.type_of(body);
     double beside = part_of(type, kFlush);
@@ -291,7 +292,7 @@ void SeamJudge::stand_on(const Floor& floor, const Simulation& simulation, const
     const Placed placed_a(simulation, step, a), placed_b(simulation, step, b);
     const bool face_of_b = m.other == b;
     const Vec4 outward = (face_of_b ? placed_b : placed_a).to_own(floor.face.normal);
-    const double margin = margin_of(simulation, step, a, b);
+    const double margin = margins_of(simulation, step, a, b).as_they_move;
     for (std::size_t i = 0; i < on_plane_.size(); ++i) {
         const Contact& c = on_plane_[i];
         const Vec4 on_body = c.point - 0.5 * c.separation * c.normal;
@@ -318,8 +319,8 @@ void SeamJudge::correct_seam(const Vec4& up, const Simulation& simulation, const
         const BodyId a = std::min(m.body, m.other), b = std::max(m.body, m.other);
         const Placed placed_a(simulation, step, a), placed_b(simulation, step, b);
         find_contacts_over_face(a, placed_a.shape, placed_a.pose, b, placed_b.shape, placed_b.pose,
-                                m.other == b, face->normal, margin_of(simulation, step, a, b),
-                                contacts);
+                                m.other == b, face->normal,
+                                margins_of(simulation, step, a, b).as_they_move, contacts);
     }
     finish(m, first, up.dot(normal));
 }

@@ -154,6 +154,7 @@ struct StepData {
 
     std::vector<Bounds> bounds;   ///< of every body
     std::vector<BodyPair> pairs;  ///< ascending
+    Vec4 drift = Vec4::Zero();    ///< see drift_of()
     ContactList contacts;         ///< ascending (a, b, feature)
     Islands islands;
     bool rows_in_use = false;              ///< from their islands' building to the sub-step's end
@@ -178,6 +179,7 @@ struct StepData {
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
     std::vector<BodyId> bodies_of_rows;   ///< room for two for each of `rows`
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
+    std::vector<std::uint8_t> was_hit;    ///< of every island: there was a blow
     std::vector<std::uint32_t> filled;    ///< which of the lists kept before have something
 };
 

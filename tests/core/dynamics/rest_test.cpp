@@ -179,6 +179,44 @@ TEST(Rest, OfTallTowersOfSmallCubes) {
         }
 }
 
+/// The lower lands while the upper still falls: they sank into each other by up to a quarter of
+/// their size, were pushed apart for seconds, and fell.
+TEST(Rest, OfTowersThatStartWithGaps) {
+    for (const auto& [height, side, gap] : {std::tuple{15, 0.01, 1e-4},
+                                            {25, 0.02, 1e-4},
+                                            {40, 0.05, 3e-4},
+                                            {40, 0.1, 1e-3},
+                                            {54, 0.1, 1e-3}}) {
+        Bodies bodies = on_floor();
+        for (int i = 0; i < height; ++i)
+            add_box(bodies, Vec4::Constant(side), {0, (i + 0.5) * side + (i + 1) * gap, 0, 0});
+        World world(bodies, PhysicsSettings{});
+        double deepest = 0;
+        for (int i = 0; i < 960; ++i) deepest = std::max(deepest, world.step(kStep).penetration);
+        EXPECT_LT(deepest, 0.02 * side) << height << " of " << side;
+        Vec4 moved = world.bodies().position[BodyId(height)] - bodies.position[BodyId(height)];
+        moved.y() = 0;
+        EXPECT_LT(moved.norm(), 0.2 * side) << height << " of " << side;
+    }
+}
+
+/// A wall of 20 rows swayed on by 6 mm/s, and one of 20 columns fell: sweeps ended after ten while
+/// they went along directions.
+TEST(Rest, OfAWallThatStartsWithGaps) {
+    const double side = 0.1, gap = 3e-4;
+    Bodies bodies = on_floor();
+    for (int row = 0; row < 20; ++row)
+        for (int i = 0; i < 8 - row % 2; ++i)
+            add_box(
+                bodies, Vec4::Constant(side),
+                {(i + 0.5 * (row % 2)) * (side + gap), (row + 0.5) * side + (row + 1) * gap, 0, 0});
+    World world(bodies, PhysicsSettings{});
+    double deepest = 0;
+    for (int i = 0; i < 960; ++i) deepest = std::max(deepest, world.step(kStep).penetration);
+    EXPECT_LT(deepest, 0.01 * side);
+    EXPECT_LT(fastest_of(world), 2e-3);
+}
+
 /// Solved one by one what is heavy slid off, at 2 m/s: 50 sweeps did not find out what weighs on
 /// the light one's corners.
 TEST(Rest, OfAHeavyBoxOnALightOne) {

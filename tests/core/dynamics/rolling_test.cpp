@@ -286,7 +286,9 @@ TEST(RollingFriction, StaysWithinItsPartOfEveryNormalImpulse) {
                     const Bivector all = step.angular_impulses[c];
                     const Vec4& n = step.contacts[c].normal;
                     const Bivector rolling = wedge(n, velocity_at(all, n));
-                    const double most = 0.03 * normal * (1 + 1e-5);  // of floats in the frame
+                    // In float both parts are told apart to 1e-7 of what would end all turning,
+                    // which is more than a hundred times as much where a ball spins fast.
+                    const double most = 0.03 * normal * (1 + 1e-4);
                     EXPECT_LE(norm(rolling), most);
                     EXPECT_LE(norm(all - rolling), most);
                     pushed += normal > 0;
