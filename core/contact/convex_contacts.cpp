@@ -37,6 +37,13 @@ struct Sides {
     std::vector<RoundSide> round;
 };
 
+/// How far a point is out of a round side, and the way out.
+Level level_of(const RoundSide& side, const Vec4& p) {
+    const Vec4 from = side.axes * (p - side.centre);
+    const double distance = from.norm();
+    return {distance - side.radius, distance > 0 ? Vec4(from / distance) : Vec4(Vec4::Zero())};
+}
+
 bool is_within(const Vec4& p, const Sides& sides, double border) {
     return std::all_of(
                sides.flat.begin(), sides.flat.end(),
@@ -93,7 +100,7 @@ struct Scratch {
         for (SurfacePiece* piece : {&a, &b}) {
             piece->sides.clear(), piece->round_sides.clear(), piece->vertices.clear();
             piece->names.clear(), piece->edges.clear();
-            piece->is_flat = false;
+            piece->is_flat = false, piece->top.radius = 0;
         }
         points.clear();
     }
@@ -124,13 +131,14 @@ class PieceContacts {
     }
 
     /// Corners of a piece that lie beside another, neither of them flat, and look the same way.
-    /// @param level   of the other body's core
+    /// @param level   of the other body's core: near an end that is what the end says, and so taken
+    ///                only where the piece does not say what it is a part of
     void add_beside(const SurfacePiece& piece, bool of_b, const SurfacePiece& other,
                     const FunctionRef<Level(const Vec4&)>& level) {
         if (piece.is_flat || other.is_flat) return;
         sides_.flat = other.sides, sides_.round = other.round_sides;
         add_corners(piece, of_b, [&](const Vec4& p) {
-            const Level there = level(p);
+            const Level there = other.top.radius > 0 ? level_of(other.top, p) : level(p);
             const double rise = (of_b ? 1 : -1) * there.gradient.dot(normal_);
             return rise >= kCellPart ? there.value : kMiss;
         });

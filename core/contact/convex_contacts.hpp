@@ -22,6 +22,9 @@ struct RoundSide {
 struct SurfacePiece {
     bool is_flat = false;  ///< a cell, in the hyperplane that bounds `plane`, within its sides
     HalfSpace plane{};
+    /// What a piece that is not flat is a part of the surface of: of radius 0 where the level of
+    /// the core says as much, as of a segment.
+    RoundSide top{};
     std::vector<HalfSpace> sides;
     std::vector<RoundSide> round_sides;
     std::vector<Vec4> vertices;                       ///< of a round piece some that span it

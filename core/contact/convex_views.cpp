@@ -135,6 +135,7 @@ void piece_along(const BallProduct& shape, const Vec4& direction, SurfacePiece& 
     }
     piece.is_flat = along->dimensions == 1;
     piece.plane = {support(*along, direction) / along->radius, along->radius};
+    if (!piece.is_flat) piece.top = {Mat4(along->axes.asDiagonal()), Vec4::Zero(), along->radius};
     for (const NamedPoint& p : all.points) {
         piece.vertices.push_back(p.point);
         piece.names.push_back(p.name);
@@ -174,10 +175,12 @@ void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece) {
     };
     move(piece.plane);
     for (HalfSpace& side : piece.sides) move(side);
-    for (RoundSide& side : piece.round_sides) {
+    const auto move_side = [&](RoundSide& side) {
         side.axes = rotation * side.axes * rotation.transpose();
         side.centre = position;
-    }
+    };
+    if (piece.top.radius > 0) move_side(piece.top);
+    for (RoundSide& side : piece.round_sides) move_side(side);
     for (Vec4& vertex : piece.vertices) vertex = position + rotation * vertex;
 }
 

@@ -163,6 +163,45 @@ TEST(RoundProducts, RollAsFreelyAsTheyAreRound) {
     }
 }
 
+/// A log, a hair out of line, between a fixed one and a wall: their ends' corners are points of the
+/// pair however deep they have sunk in. By the core's level an end was nearer than the round side:
+/// one point was left, at another corner in each step, and logs sank into each other by a third.
+TEST(RoundProducts, ThatLieBetweenOthersAHairOutOfLineDoNotSinkIn) {
+    std::mt19937_64 random(7);
+    const auto uniform = [&](double most) {
+        return std::uniform_real_distribution<>(-most, most)(random);
+    };
+    const double radius = 0.25;
+    const Rotor along_z = exp(Bivector{0, 0, 0, pi / 4, 0, 0});
+    for (const auto& [shape, turn] : {std::pair{Shape(cubinder(radius, {2, 2})), Rotor{}},
+                                      {Shape(duocylinder({radius, 1})), Rotor{}},
+                                      {Shape(spherinder(radius, 2)), along_z}})
+        for (int i = 0; i < 10; ++i) {
+            BodyType log = type_of(shape);
+            log.friction = 0.5;
+            BodyType fixed = log;
+            fixed.fixed_position = fixed.fixed_rotation = true;
+            const double x = radius * (1 + 0.5 * uniform(1));
+            const Bivector lean = {0, uniform(3e-3), uniform(3e-3), uniform(3e-3), uniform(3e-3),
+                                   0};
+            Bodies bodies;
+            add(bodies, fixed, Vec4::Zero(), Vec4::Zero(), {}, turn);
+            add(bodies, log, {x, std::sqrt(4 * radius * radius - x * x), 0, 0}, Vec4::Zero(), {},
+                exp(lean) * turn);
+            add(bodies, plane_type(-Vec4::UnitX(), -x - radius, 0.5));
+            World world(bodies, PhysicsSettings{});
+            double deepest = 0;
+            for (int step = 0; step < 480; ++step) {
+                const double now = world.step(kStep).penetration;
+                if (step > 240) deepest = std::max(deepest, now);
+            }
+            EXPECT_LT(deepest, 0.01 * radius) << shape.index() << " " << i;
+            // Balls times segments roll off each other along w.
+            if (std::holds_alternative<Spherinder>(shape)) continue;
+            EXPECT_LT(world.bodies().velocity[1].norm(), 1e-3) << shape.index() << " " << i;
+        }
+}
+
 /// Discs that land aslant, spinning, and wobble down: the point that touches runs round the rim
 /// faster than it is found again.
 TEST(RoundProducts, ThatWobbleDownDoNotSinkIn) {
