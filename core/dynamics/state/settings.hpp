@@ -25,7 +25,7 @@ struct PhysicsSettings {
     double steps_per_second = 240;  ///< [1/s]
     int substeps = 1;  ///< of equal length, a step: pairs are looked for once, contacts in each
     /// Sweeps of the contact solver over an island, a sub-step, at most; see effort_of_load() for
-    /// islands of few contacts.
+    /// what may take more.
     int iterations = 10;
     double tolerance = 1e-6;  ///< residual [m/s] below which its sweeps end; 0: all of them
     Solver solver = Solver::kImpulse;
