@@ -161,7 +161,8 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     if (simulation.settings.solver == Solver::kImpulse) keep_coloured(coloured, threads);
     if (step.pushed[island]) {
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
-        iterate_coloured(coloured, Pass::kPush, effort_of_push(simulation), threads, lanes);
+        iterate_coloured(coloured, Pass::kPush,
+                         effort_of_push(simulation, step.islands.contacts[island]), threads, lanes);
     }
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }

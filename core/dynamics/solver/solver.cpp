@@ -370,7 +370,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, step, island));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
     if (step.pushed[island])
-        run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation));
+        run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation, rows.size()));
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {

@@ -48,8 +48,16 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
     return effort;
 }
 /// Of what takes overlap away, after the load: nothing goes on with it.
-inline Effort effort_of_push(const Simulation& simulation) {
-    return {std::min(simulation.settings.iterations, kPushSweeps)};
+inline Effort effort_of_push(const Simulation& simulation, std::size_t contacts) {
+    const PhysicsSettings& settings = simulation.settings;
+    Effort effort{std::min(settings.iterations, kPushSweeps)};
+    if (!(settings.tolerance > 0) || settings.iterations < PhysicsSettings{}.iterations)
+        return effort;
+    const std::size_t of_few = kPushWork / contacts;
+    effort.sweeps =
+        std::max(effort.sweeps, static_cast<int>(std::min<std::size_t>(of_few, kMostPushSweeps)));
+    effort.enough = settings.tolerance, effort.every = 2;
+    return effort;
 }
 /// Of a blow: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
 /// @param fastest   see Blow
