@@ -117,7 +117,7 @@ constexpr int kFurther = 3;
 /// little of it and the residual does not see it. Fewer, and it does until the residual is above
 /// the tolerance, and then takes hundreds of steps of many sweeps to come to rest again (at 2 and 4
 /// a wall of 20 rows takes 20 sweeps a step on average), or sways for ever (three 120-cells on one
-/// another by 3 mm/s at any number of iterations); more only cost more.
+/// another by 3 mm/s at 10, 14 and 40 iterations); more only cost more.
 constexpr int kLeastSweeps = 8;
 
 /// Part of the tolerance below which a load that goes along no conjugate directions ends before

@@ -23,6 +23,15 @@ struct Effort {
         return residual <= (done < least ? kHardlyAnything : 1) * enough;
     }
 };
+/// Whether as many sweeps as by default are asked for: then there may be more where they help.
+inline bool may_take_more(const PhysicsSettings& settings) {
+    return settings.tolerance > 0 && settings.solver == Solver::kImpulse &&
+           settings.iterations >= PhysicsSettings{}.iterations;
+}
+/// How many an island of so many contacts may take, as few cost little.
+inline int sweeps_of_few(std::size_t work, std::size_t contacts, std::size_t most) {
+    return static_cast<int>(std::min(work / contacts, most));
+}
 /// Of what rests: its impulses are started from in the next sub-step, which goes on with them.
 /// Unless fewer sweeps than by default are asked for, what nothing has hit in the sub-step, and so
 /// may be about to come to rest, goes further along conjugate directions, and an island of few
@@ -31,12 +40,9 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
                              std::size_t island) {
     const PhysicsSettings& settings = simulation.settings;
     Effort effort{settings.iterations, -1, 2, 0, kLeastSweeps};
-    if (!(settings.tolerance > 0)) return effort;
-    effort.enough = settings.tolerance;
-    if (settings.solver != Solver::kImpulse || settings.iterations < PhysicsSettings{}.iterations)
-        return effort;
-    const std::size_t of_few = kLoadWork / step.islands.contacts[island];
-    int most = static_cast<int>(std::min<std::size_t>(of_few, kMostLoadSweeps));
+    if (settings.tolerance > 0) effort.enough = settings.tolerance;
+    if (!may_take_more(settings)) return effort;
+    int most = sweeps_of_few(kLoadWork, step.islands.contacts[island], kMostLoadSweeps);
     // An odd number begins with a sweep forward, before there are directions: what these then go on
     // from is nearer to the load (7 of 160 towers that start with gaps fall with an even one, 1 of
     // 220 with an odd one).
@@ -51,11 +57,8 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
 inline Effort effort_of_push(const Simulation& simulation, std::size_t contacts) {
     const PhysicsSettings& settings = simulation.settings;
     Effort effort{std::min(settings.iterations, kPushSweeps)};
-    if (!(settings.tolerance > 0) || settings.iterations < PhysicsSettings{}.iterations)
-        return effort;
-    const std::size_t of_few = kPushWork / contacts;
-    effort.sweeps =
-        std::max(effort.sweeps, static_cast<int>(std::min<std::size_t>(of_few, kMostPushSweeps)));
+    if (!may_take_more(settings)) return effort;
+    effort.sweeps = std::max(effort.sweeps, sweeps_of_few(kPushWork, contacts, kMostPushSweeps));
     effort.enough = settings.tolerance, effort.every = 2;
     return effort;
 }

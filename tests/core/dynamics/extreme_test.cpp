@@ -132,6 +132,15 @@ TEST(Extreme, OverlapIsPushedOutAlongTheNormals) {
     }
 }
 
+/// What overlaps rests, and is in what it touches by no more than the solver leaves alone, 4 s on.
+void expect_pushed_out(const Bodies& bodies) {
+    World world(bodies, impulse());
+    StepReport report;
+    for (int i = 0; i < 960; ++i) report = world.step(1.0 / 240);
+    EXPECT_LT(report.penetration, 0.5 * kSlopOfBox);
+    EXPECT_LT(world.bodies().velocity[1].norm(), 1e-3);
+}
+
 /// It was pushed out of one overlap into the other: after 4 s 36 mm were left.
 TEST(Extreme, OverlapUnderAHeavyBodyIsPushedOut) {
     Bodies bodies;
@@ -141,11 +150,7 @@ TEST(Extreme, OverlapUnderAHeavyBodyIsPushedOut) {
         board.friction = 0.5;
         add(bodies, board, {0, mass > 1 ? 0.24 : 0.07, 0, 0});
     }
-    World world(bodies, impulse());
-    StepReport report;
-    for (int i = 0; i < 960; ++i) report = world.step(1.0 / 240);
-    EXPECT_LT(report.penetration, 1e-3);
-    EXPECT_LT(world.bodies().velocity[1].norm(), 1e-3);
+    expect_pushed_out(bodies);
 }
 
 /// Between a fixed box that leans by 20 degrees and a wall: it went deeper in, to a quarter of its
@@ -158,11 +163,7 @@ TEST(Extreme, OverlapInANarrowWedgeIsPushedOut) {
     add(bodies, fixed, Vec4::Zero(), Vec4::Zero(), {}, lean);
     add(bodies, box, {0.33992, 0.37593, 0, 0}, Vec4::Zero(), {}, lean);
     add(bodies, plane_type(-Vec4::UnitX(), -0.60031));
-    World world(bodies, impulse());
-    StepReport report;
-    for (int i = 0; i < 960; ++i) report = world.step(1.0 / 240);
-    EXPECT_LT(report.penetration, 2e-3);
-    EXPECT_LT(world.bodies().velocity[1].norm(), 1e-3);
+    expect_pushed_out(bodies);
 }
 
 TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {

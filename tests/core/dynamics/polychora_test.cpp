@@ -145,7 +145,7 @@ TEST(Polychora, StandOnOneAnother) {
     }
 }
 
-/// They lean by less a sweep than the tolerance, and swayed by 3 mm/s for ever at 10, 20 and 40
+/// They lean by less a sweep than the tolerance, and swayed by 3 mm/s for ever at 10, 14 and 40
 /// iterations, as their loads ended after two sweeps.
 TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
     const BodyType type = regular_type(RegularPolychoron::k120Cell, 0.7);
