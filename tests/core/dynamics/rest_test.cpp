@@ -200,8 +200,8 @@ TEST(Rest, OfTowersThatStartWithGaps) {
     }
 }
 
-/// It swayed on by 6 mm/s, and one of 22 rows and 20 columns fell: sweeps ended after ten while they
-/// went along directions.
+/// It swayed on by 6 mm/s, and one of 22 rows and 20 columns fell: sweeps ended after ten while
+/// they went along directions.
 TEST(Rest, OfAWallThatStartsWithGaps) {
     const double side = 0.1, gap = 3e-4;
     Bodies bodies = on_floor();
