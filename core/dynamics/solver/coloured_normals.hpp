@@ -19,24 +19,24 @@ class PairNormals {
   public:
     /// @param motion   of the pair, along the normal
     [[gnu::always_inline]] PairNormals(const Lane<F>& lane, ColouredIslands& coloured,
-                                       const Batch& batch, const std::array<F, 4>& motion)
+                                       const Batch& batch, Pass pass,
+                                       const std::array<F, 4>& motion)
         : lane_(lane),
           rows_(&coloured.rows[batch.row]),
-          relax_targets_(&coloured.relax.target[batch.row]),
-          keep_(keep_from(coloured.relax, batch.row)),
+          keep_(pass == Pass::kSolve ? keep_from(coloured.relax, batch.row) : nullptr),
           impulses_(&coloured.impulses.normal[batch.row]),
           response_(first_of<kResponses>(lane, &coloured.point_response[batch.response])),
           count_(batch.rows),
           change_{} {
-        see(motion, All());
+        see(&coloured.relax.target[batch.row], pass, motion, All());
     }
 
     /// Once through all points.
     /// @tparam kFirst   else what a point does to those before it is of no use any more
     /// @return the largest velocity that was left to solve, if `measured`
     template <bool kBackward, bool kFirst>
-    [[gnu::always_inline]] F solve(Pass pass, bool measured) {
-        return solve<kBackward, kFirst>(pass, measured, All());
+    [[gnu::always_inline]] F solve(bool measured) {
+        return solve<kBackward, kFirst>(measured, All());
     }
 
     /// What the impulses have changed by, seen from the centre.
@@ -46,26 +46,28 @@ class PairNormals {
 
   private:
     template <std::size_t... k>
-    [[gnu::always_inline]] void see(const std::array<F, 4>& motion, std::index_sequence<k...>) {
-        ((velocity_[k] = k < count_ ? along_at(place_of(lane_, rows_[k]), motion) : F{}), ...);
+    [[gnu::always_inline]] void see(const Eight* relax_targets, Pass pass,
+                                    const std::array<F, 4>& motion, std::index_sequence<k...>) {
+        ((left_[k] = k < count_ ? target_of(lane_, rows_[k].along, relax_targets[k], pass) -
+                                      along_at(place_of(lane_, rows_[k]), motion)
+                                : F{}),
+         ...);
     }
     template <bool kBackward, bool kFirst, std::size_t... i>
-    [[gnu::always_inline]] F solve(Pass pass, bool measured, std::index_sequence<i...>) {
+    [[gnu::always_inline]] F solve(bool measured, std::index_sequence<i...>) {
         F left{};
-        (solve_point < kBackward ? kPoints - 1 - i : i, kBackward,
-         kFirst > (pass, measured, left, All()), ...);
+        (solve_point < kBackward ? kPoints - 1 - i : i, kBackward, kFirst > (measured, left, All()),
+         ...);
         return left;
     }
     template <std::size_t k, bool kBackward, bool kFirst, std::size_t... j>
-    [[gnu::always_inline]] void solve_point(Pass pass, bool measured, F& left,
-                                            std::index_sequence<j...>) {
+    [[gnu::always_inline]] void solve_point(bool measured, F& left, std::index_sequence<j...>) {
         if (k >= count_) return;
-        const F change =
-            solve_normal(lane_, rows_[k].along, relax_targets_[k], keep_ ? keep_ + k : nullptr,
-                         velocity_[k], pass, impulses_[k]);
+        const F change = solve_normal(lane_, rows_[k].along, keep_ ? keep_ + k : nullptr, left_[k],
+                                      impulses_[k]);
         change_[k] += change;
         ((kFirst || (kBackward ? j < k : j > k)
-              ? void(velocity_[j] = fused(change, response(k, j), velocity_[j]))
+              ? void(left_[j] = fused(-change, response(k, j), left_[j]))
               : void()),
          ...);
         if (measured) left = larger(left, magnitude(change) * response(k, k));
@@ -87,11 +89,11 @@ class PairNormals {
 
     const Lane<F>& lane_;
     const GeneralRow* const rows_;
-    const Eight *const relax_targets_, *const keep_;
+    const Eight* const keep_;
     Eight* const impulses_;
     const std::array<F, kResponses> response_;
     const std::uint32_t count_;
-    std::array<F, kPoints> velocity_, change_;
+    std::array<F, kPoints> left_, change_;
 };
 
 }  // namespace tesserae::lanes

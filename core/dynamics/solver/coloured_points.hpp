@@ -146,16 +146,19 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);
     for (std::uint32_t p = 0; p < count; ++p) {
         EightPairs::Points& point = pairs.points[p];
-        const ContactImpulse impulse =
-            stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
         const Vec4 place = points[p].place - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
         const ContactTargets targets = targets_of.at(points[p].separation, along);
         put(place, point.place[lane]);
-        put(per_mass_unit * impulse.tangent(), point.impulse[lane]);
-        put({targets.solve, targets.relax, targets.keep, per_mass_unit * impulse.normal},
-            point.along[lane]);
+        float normal = 0;
+        if (stage.cause == Cause::kLoad) {
+            const ContactImpulse& impulse = step.impulses[first + p];
+            normal = static_cast<float>(per_mass_unit * impulse.normal);
+            for (std::size_t i = 0; i < 4; ++i) point.impulse[lane][i] = normal * impulse.slope[i];
+        }
+        point.along[lane] = {static_cast<float>(targets.solve), static_cast<float>(targets.relax),
+                             static_cast<float>(targets.keep), normal};
     }
 }
 
@@ -194,18 +197,22 @@ inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
     return relax.keep.empty() ? nullptr : &relax.keep[place];
 }
 
-/// One step of a normal impulse at the change v of the normal velocity.
-/// @param keep   as of keep_from()
+/// The normal velocity that a pass aims at, less that of the start.
+template <class F>
+[[gnu::always_inline]] inline F target_of(const Lane<F>& lane, const NormalRow& row,
+                                          const Eight& relax_target, Pass pass) {
+    return lane.load(pass == Pass::kSolve ? row.target : relax_target);
+}
+/// One step of a normal impulse.
+/// @param keep   as of keep_from(); null in passes that need none
+/// @param left   of its target, less the change of the normal velocity
 /// @return its change
 template <class F>
 [[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, const NormalRow& row,
-                                             const Eight& relax_target, const Eight* keep, F v,
-                                             Pass pass, Eight& impulse) {
-    const bool relaxes = pass != Pass::kSolve;
+                                             const Eight* keep, F left, Eight& impulse) {
     const F old = lane.load(impulse);
-    const F target = lane.load(relaxes ? relax_target : row.target);
-    F change = lane.load(row.mass) * (target - v);
-    if (keep && !relaxes) change = lane.load(*keep) * (old + change) - old;
+    F change = lane.load(row.mass) * left;
+    if (keep) change = lane.load(*keep) * (old + change) - old;
     change = larger(change, -old);  // sooner there than by the impulse
     lane.store(old + change, impulse);
     return change;

@@ -128,9 +128,11 @@ template <bool kFriction, bool kRolling, class F>
     const LaneVec4<F> v = b.velocity - a.velocity;
     const F along = dot(n, v);
     Eight& impulse = coloured.round_impulses.normal[batch];
+    const bool solves = sweep.pass == Pass::kSolve;
+    const F target = target_of(lane, row.along, coloured.round_relax.target[batch], sweep.pass);
     const F change =
-        solve_normal(lane, row.along, coloured.round_relax.target[batch],
-                     keep_from(coloured.round_relax, batch), along, sweep.pass, impulse);
+        solve_normal(lane, row.along, solves ? keep_from(coloured.round_relax, batch) : nullptr,
+                     target - along, impulse);
     const F normal_impulse = lane.load(impulse);
     LaneVec4<F> tangent_change{};
     if constexpr (kFriction) {

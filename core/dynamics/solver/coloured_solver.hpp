@@ -66,6 +66,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
     for (int i = 0; goes_on(i); ++i) {
         Sweep sweep = sweep_of(Pass::kSolve, effort, i);
         sweep.adjoint = sweep.backward;
+        sweep.measured &= i + 1 >= std::min(effort.least, effort.sweeps);
         if (sweep.backward && directions) directions->go_on();
         if (sweep.backward && !directions) directions.emplace(island, threads);
         residual = directions ? sweep_coloured(island, sweep, threads, lanes, *directions)
