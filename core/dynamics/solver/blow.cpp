@@ -35,17 +35,19 @@ bool has_blow(const Simulation& simulation, const StepData& step, Range contacts
     return false;
 }
 
-Blow blow_of_island(const Simulation& simulation, const StepData& step, std::size_t island) {
+Blow larger_of(const Blow& a, const Blow& b) {
+    return {std::max(a.fastest, b.fastest), std::max(a.returned, b.returned), a.driven || b.driven};
+}
+
+Blow blow_of_runs(const Simulation& simulation, const StepData& step,
+                  std::span<const std::uint32_t> runs) {
     Blow all;
-    for (const std::uint32_t n : step.islands.runs_in(island)) {
+    for (const std::uint32_t n : runs) {
         const ContactList::Run run = step.contacts.nth_run(n);
         const BlowFilter filter(simulation, step, step.contacts[run.begin]);
-        for (std::size_t i = run.begin; i < run.end; ++i) {
-            if (!filter.passes(step.contacts.point(i))) continue;
-            const Blow blow = blow_of(simulation, step, step.contacts[i]);
-            all.fastest = std::max(all.fastest, blow.fastest);
-            all.returned = std::max(all.returned, blow.returned);
-        }
+        for (std::size_t i = run.begin; i < run.end; ++i)
+            if (filter.passes(step.contacts.point(i)))
+                all = larger_of(all, blow_of(simulation, step, step.contacts[i]));
         all.driven |= is_driven(simulation, run.a) || is_driven(simulation, run.b);
     }
     return all;
@@ -62,46 +64,60 @@ bool can_jam(const Simulation& simulation, const Blow& blow) {
 
 bool has_jammed(double before, double after) { return !(after <= (1 + kNotJammed) * before); }
 
-void limit_restitution(const Simulation& simulation, StepData& step, std::span<const BodyId> bodies,
-                       const Blow& blow) {
-    double taken_squared = 0, given_squared = 0, lost = 0, cross = 0, all = 0;
-    // Gravity's work in the sub-step changes by half of its kick times the change of velocity.
+RestitutionSums& RestitutionSums::operator+=(const RestitutionSums& sums) {
+    taken_squared += sums.taken_squared, given_squared += sums.given_squared;
+    lost += sums.lost, cross += sums.cross, all += sums.all;
+    work_taken += sums.work_taken, work_given += sums.work_given;
+    return *this;
+}
+
+RestitutionSums restitution_of(const Simulation& simulation, const StepData& step,
+                               std::span<const BodyId> bodies) {
+    RestitutionSums sums;
     const Vec4 kick = step.h * simulation.settings.gravity;
-    double work_taken = 0, work_given = 0;
     for (const BodyId id : bodies) {
         const BlowMotion& m = step.blow_motion[id];
         const BodyMotion taken = m.before - m.compressed;
         const BodyMotion given = motion_of(step, id) - m.compressed;
-        taken_squared += product(simulation, step, id, taken, taken);
-        given_squared += product(simulation, step, id, given, given);
-        lost += product(simulation, step, id, taken, m.before + m.compressed);
-        cross += product(simulation, step, id, m.compressed, given);
-        all += product(simulation, step, id, m.before, m.before);
+        sums.taken_squared += product(simulation, step, id, taken, taken);
+        sums.given_squared += product(simulation, step, id, given, given);
+        sums.lost += product(simulation, step, id, taken, m.before + m.compressed);
+        sums.cross += product(simulation, step, id, m.compressed, given);
+        sums.all += product(simulation, step, id, m.before, m.before);
         const TypeProperties& type = simulation.type_of(id);
         if (!type.falls) continue;
-        work_taken += type.mass * kick.dot(taken.velocity);
-        work_given += type.mass * kick.dot(given.velocity);
+        sums.work_taken += type.mass * kick.dot(taken.velocity);
+        sums.work_given += type.mass * kick.dot(given.velocity);
     }
-    const double slope = cross + 0.5 * work_given, least = lost + work_taken;
+    return sums;
+}
+
+double part_of_restitution(const RestitutionSums& sums, const Blow& blow) {
+    const double slope = sums.cross + 0.5 * sums.work_given, least = sums.lost + sums.work_taken;
     // The part x of what is given: x^2 given^2 + 2 x cross <= returned^2 taken^2, twice energies.
-    if (blow.driven || cross < 0) cross = 0;
-    const double taken = blow.driven ? taken_squared : std::clamp(lost, 0.0, taken_squared);
+    const double cross = blow.driven ? 0 : std::max(0.0, sums.cross);
+    const double taken =
+        blow.driven ? sums.taken_squared : std::clamp(sums.lost, 0.0, sums.taken_squared);
     const double most = blow.returned * blow.returned * taken;
     double part = 1;
-    bool is_cut = given_squared + 2 * cross > most;
-    if (is_cut) {
-        const double root = std::sqrt(cross * cross + given_squared * most);
+    if (sums.given_squared + 2 * cross > most) {
+        const double root = std::sqrt(cross * cross + sums.given_squared * most);
         part = most > 0 ? most / (cross + root) : 0;
     }
     // Nor more than the energy that there was, with gravity's work: part^2 given^2 + 2 part slope
     // <= least, where a blow that is not central rebounds before the bodies touch.
     if (!blow.driven &&
-        part * part * given_squared + 2 * part * slope > least + kEnergyRounding * all) {
-        const double root = std::sqrt(std::max(0.0, slope * slope + given_squared * least));
-        part = given_squared > 0 ? std::clamp((root - slope) / given_squared, 0.0, part) : 0;
-        is_cut = true;
+        part * part * sums.given_squared + 2 * part * slope > least + kEnergyRounding * sums.all) {
+        const double root = std::sqrt(std::max(0.0, slope * slope + sums.given_squared * least));
+        part =
+            sums.given_squared > 0 ? std::clamp((root - slope) / sums.given_squared, 0.0, part) : 0;
     }
-    if (!is_cut) return;
+    return part;
+}
+
+void leave_part_of_restitution(const Simulation& simulation, StepData& step,
+                               std::span<const BodyId> bodies, double part) {
+    if (part == 1) return;
     for (const BodyId id : bodies) {
         const BodyMotion& compressed = step.blow_motion[id].compressed;
         const BodyMotion motion = compressed + part * (motion_of(step, id) - compressed);

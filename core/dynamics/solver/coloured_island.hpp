@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/dynamics/solver/coloured_kernels.hpp"
 
@@ -28,12 +31,26 @@ struct OneThread {
     }
 };
 
+/// What work(Range) returns of pieces of a range, see kSumPiece, in their order: the same for any
+/// number of threads.
+template <class Threads, class Work>
+auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
+    std::vector<decltype(work(all))> results((all.end - all.begin + kSumPiece - 1) / kSumPiece);
+    threads.for_bodies(all, [&](Range some) {
+        for (std::size_t i = some.begin; i < some.end; i += kSumPiece)
+            results[(i - all.begin) / kSumPiece] =
+                work(Range{i, std::min(i + kSumPiece, some.end)});
+    });
+    return results;
+}
+
 /// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
 void begin_changes(const ColouredStage& stage, Range bodies);
 /// step.blow_motion of the bodies: with the changes of the compression, not added yet.
 void keep_blow_motion(const ColouredStage& stage, Range bodies);
-/// Whether friction has in the compression, whose changes are not added yet; see can_jam().
-bool has_jammed(const ColouredStage& stage, Range bodies);
+/// Twice their kinetic energy [J] before the compression and after it, whose changes are not added
+/// yet; see has_jammed().
+std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular

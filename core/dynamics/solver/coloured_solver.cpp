@@ -72,18 +72,18 @@ void keep_blow_motion(const ColouredStage& stage, Range bodies) {
     }
 }
 
-bool has_jammed(const ColouredStage& stage, Range bodies) {
-    double before = 0, after = 0;
+std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range bodies) {
+    std::array<double, 2> energies = {};
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = stage.step.coloured.bodies[i];
         const BodyChange& change = stage.step.coloured.changes[i];
         const BodyMotion motion = motion_of(stage.step, id);
-        before += twice_kinetic_energy(stage.simulation, stage.step, id, motion);
-        after += twice_kinetic_energy(
+        energies[0] += twice_kinetic_energy(stage.simulation, stage.step, id, motion);
+        energies[1] += twice_kinetic_energy(
             stage.simulation, stage.step, id,
             motion + BodyMotion{velocity_change(change), angular_change(change)});
     }
-    return has_jammed(before, after);
+    return energies;
 }
 
 void add_changes(const ColouredStage& stage, Range bodies) {

@@ -116,11 +116,54 @@ void compress_coloured(const ColouredIsland& island, const Effort& effort, const
     iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
 }
 
+/// The largest numbers of an island's contacts.
+template <class Threads>
+Blow blow_of_coloured(const Simulation& simulation, const StepData& step, std::size_t island,
+                      const Threads& threads) {
+    const std::span<const std::uint32_t> runs = step.islands.runs_in(island);
+    Blow all;
+    for (const Blow& piece : results_of_pieces(threads, {0, runs.size()}, [&](Range some) {
+             return blow_of_runs(simulation, step, runs.subspan(some.begin, some.end - some.begin));
+         }))
+        all = larger_of(all, piece);
+    return all;
+}
+
+/// Whether friction has in the compression, see can_jam().
+template <class Threads>
+bool has_jammed(const ColouredIsland& island, const Threads& threads) {
+    double before = 0, after = 0;
+    for (const auto& [first, last] : results_of_pieces(threads, island.bodies(), [&](Range bodies) {
+             return energies_of_compression(island.stage(), bodies);
+         }))
+        before += first, after += last;
+    return has_jammed(before, after);
+}
+
+/// Cuts what restitution gave to the island's bodies, see RestitutionSums.
+template <class Threads>
+void limit_restitution(const ColouredIsland& island, const Blow& blow, const Threads& threads) {
+    const Simulation& simulation = island.stage().simulation;
+    StepData& step = island.stage().step;
+    const auto bodies_in = [&](Range some) {
+        return std::span<const BodyId>(&step.coloured.bodies[some.begin], some.end - some.begin);
+    };
+    RestitutionSums sums;
+    for (const RestitutionSums& piece : results_of_pieces(
+             threads, island.bodies(),
+             [&](Range some) { return restitution_of(simulation, step, bodies_in(some)); }))
+        sums += piece;
+    const double part = part_of_restitution(sums, blow);
+    threads.for_bodies(island.bodies(), [&](Range some) {
+        leave_part_of_restitution(simulation, step, bodies_in(some), part);
+    });
+}
+
 /// solve_blow() of a coloured island.
 template <class Threads>
 void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island,
                          const Threads& threads, LaneCount lanes = LaneCount::kEight) {
-    const Blow blow = blow_of_island(simulation, step, island);
+    const Blow blow = blow_of_coloured(simulation, step, island, threads);
     if (blow.fastest == 0) return;
     step.was_hit[island] = 1;
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
@@ -130,7 +173,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     const Range range = coloured.bodies();
     compress_coloured(coloured, effort, threads, lanes);
     step.has_rows[island] = 1;
-    if (can_jam(simulation, blow) && has_jammed(stage, range))
+    if (can_jam(simulation, blow) && has_jammed(coloured, threads))
         compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), effort,
                           threads, lanes);
     const auto add = [&](Range some) { add_changes(stage, some); };
@@ -138,12 +181,10 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
         threads.for_bodies(range, add);
         return keep_coloured(coloured, threads);
     }
-    const std::span<const BodyId> bodies(&step.coloured.bodies[range.begin],
-                                         range.end - range.begin);
     threads.for_bodies(range, [&](Range some) { keep_blow_motion(stage, some); });
     iterate_coloured(coloured, Pass::kRelax, effort, threads, lanes);
     threads.for_bodies(range, add);
-    limit_restitution(simulation, step, bodies, blow);
+    limit_restitution(coloured, blow, threads);
     keep_coloured(coloured, threads);
 }
 

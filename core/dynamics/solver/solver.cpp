@@ -340,7 +340,7 @@ void compress(const Simulation& simulation, StepData& step, std::size_t island, 
 void solve_blow(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return solve_coloured_blow(simulation, step, island, OneThread{});
-    const Blow blow = blow_of_island(simulation, step, island);
+    const Blow blow = blow_of_runs(simulation, step, step.islands.runs_in(island));
     if (blow.fastest == 0) return;
     step.was_hit[island] = 1;
     start_rows(simulation, step, island, Cause::kBlow);
@@ -355,7 +355,8 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
     compress(simulation, step, island, blow, effort);
     for (const BodyId id : bodies) step.blow_motion[id].compressed = motion_of(step, id);
     run_pass(simulation, step, rows, Pass::kRelax, effort);
-    limit_restitution(simulation, step, bodies, blow);
+    const double part = part_of_restitution(restitution_of(simulation, step, bodies), blow);
+    leave_part_of_restitution(simulation, step, bodies, part);
     keep_hits(step, island);
 }
 

@@ -6,7 +6,7 @@ namespace tesserae {
 
 /// If bodies of the island hit each other in this sub-step: the change of their motion by it. Needs
 /// the velocities before gravity. First the compression, until no bodies meet, then the restitution
-/// (limit_restitution()). Its impulses are not kept: what is started from in the next sub-step is
+/// (part_of_restitution()). Its impulses are not kept: what is started from in the next sub-step is
 /// the load alone.
 void solve_blow(const Simulation& simulation, StepData& step, std::size_t island);
 
