@@ -1,4 +1,4 @@
-"""How the stages of a step grow with the bodies and shrink with the threads: one CSV file, three plots.
+"""How the stages of a step grow with the bodies and shrink with the threads: one CSV file and plots.
 
 usage: report_scaling.py HEAD SCALING_CSV RESULTS_FOLDER
 HEAD holds the comment lines (machine, build, commit) that begin every CSV file; SCALING_CSV is what the
@@ -155,6 +155,27 @@ def plot_threads(path, of, scenes):
     save(figure, path)
 
 
+def plot_curves(path, of, scenes):
+    """The gain of the step and of each stage against the threads, of the most bodies."""
+    figure, axes = panels(scenes)
+    for axis, scene in zip(axes, scenes):
+        bodies = max(sizes_of(of, scene))
+        counts = sorted(threads for name, n, threads in of if (name, n) == (scene, bodies))
+        for stage in TIMES:
+            gains = [1 if threads == 1 else
+                     ratios(of, scene, bodies, threads).get(stage, [np.nan])[0]
+                     for threads in counts]
+            axis.plot(counts, gains, ".-", color=COLORS.get(stage, "black"), label=stage)
+        axis.plot(counts, counts, color="gray", lw=0.5)
+        axis.set_title(f"{bodies:.0e} {scene}")
+        axis.set_xlabel("threads")
+        axis.set_xscale("log", base=2)
+        axis.set_yscale("log", base=2)
+    axes[0].set_ylabel("time of 1 thread over that of all")
+    axes[-1].legend(fontsize=7, bbox_to_anchor=(1.02, 1), loc="upper left")
+    save(figure, path)
+
+
 def main():
     head_path, path, results = sys.argv[1:]
     with open(head_path) as file:
@@ -167,6 +188,8 @@ def main():
     plot_times(f"{results}/time_per_body.png", of, scenes)
     plot_shares(f"{results}/shares.png", of, scenes)
     plot_threads(f"{results}/threads.png", of, scenes)
+    if most_threads(of) > 2:
+        plot_curves(f"{results}/curves.png", of, scenes)
 
 
 main()

@@ -18,10 +18,11 @@
 #   bash bench/run.sh wall         a wall that settles, rests, is hit, beside Bullet's, ten minutes
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, twelve minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
+#   bash bench/run.sh scaling-16-cores  the same for 10^5 bodies, for a machine of many cores; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
 all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest wall scaling)
-on_demand=(cycles large scaling-million)
+on_demand=(cycles large scaling-million scaling-16-cores)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
     case " ${all[*]} ${on_demand[*]} " in *" $1 "*) parts=("$1") ;; *)
@@ -202,6 +203,11 @@ scaling() {
 }
 
 scaling-million() { scale scaling-million "$1" gas,1000000,5,3 pile,1000000,45,3; }
+
+scaling-16-cores() {
+    scale scaling-16-cores "$1" boxes,100000,240,5 pyramid,100000,60,5 gas,100000,120,40 \
+        stacks,100000,60,5 pile,100000,480,5
+}
 
 for part in "${parts[@]}"; do "$part" "$(load)"; done
 echo "wrote $results" >&2
