@@ -56,15 +56,15 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "3b7b495ae6b00365a33c4c2efb71a7aa");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "544056b647cf3406620caca7bbce40c3");
-    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "f5c799f011043967fbf2b50d3a2016d8");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "25e3b2a477c2b2923fbf7fce9e91c3f0");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "2a64fbb6eba7818ddb0bdb8994ce5743");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "5fafd39315870fa32129fd00edcb55a0");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2", "physics.sleeping=true"};
-    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "842a54c7ef8e284c1361b346fe095a70");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "eeec1caa09d9a6a2eda8a260beb0e49f");
     EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "6b327ccc49ae8df8d0dfa7da5da3bda3");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "0c1b0bd771ce1fe6f27628e4b81a82be");
 }
@@ -117,8 +117,8 @@ TEST_F(Golden, AFilmIsAsEver) {
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
-              "175b50ed2d51419b0fab53122b0deffd");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "7bc499116c2d2d073e53f71192504fc4");
+              "ddbc839cb64ab56744fb6477685963ba");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "0dfe92543cdbe6ea6198c002b16a71de");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ class ColouredIsland {
                  step,
                  all_.mass_unit[place_],
                  cause,
-                 step.pushed[island] != 0,
+                 parting_of(simulation, step, island),
                  friction,
                  step.has_rows[island] != 0} {}
 

@@ -15,7 +15,7 @@ struct ColouredStage {
     StepData& step;
     double mass_unit;  ///< [kg]
     Cause cause;
-    bool pushed;           ///< see is_pushed()
+    Parting parting;
     bool friction = true;  ///< false: without
     bool made = false;     ///< the rows are those of the blow before, but for what they start from
 };

@@ -58,7 +58,8 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
     const ContactTargets targets =
-        PairTargets(simulation, step, c, stage.cause, stage.pushed).at(c.separation, along);
+        PairTargets(simulation, step, c, stage.cause, stage.parting.at(step, {index, index + 1}))
+            .at(c.separation, along);
     put(c.normal, points.normal[lane]);
     if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
@@ -126,7 +127,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const StepData& step = stage.step;
     const Contact contact = step.contacts[first];
     const BodyId a = contact.a, b = contact.b;
-    const PairTargets targets_of(simulation, step, contact, stage.cause, stage.pushed);
+    const PairTargets targets_of(simulation, step, contact, stage.cause,
+                                 stage.parting.at(step, {first, first + count}));
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     std::array<PairPoint, kManifoldPoints> points;
     points[0] = {contact.point, contact.separation};

@@ -81,10 +81,11 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
 }
 
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
-               const ContactImpulse& impulse, Cause cause, bool pushed, ContactRow& row) {
+               const ContactImpulse& impulse, Cause cause, const Parting& parting,
+               ContactRow& row) {
     const Vec4 v =
         relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-    const ContactTargets targets = PairTargets(simulation, step, contact, cause, pushed)
+    const ContactTargets targets = PairTargets(simulation, step, contact, cause, parting)
                                        .at(contact.separation, row.normal.dot(v));
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};

@@ -23,9 +23,9 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
 
 /// Its targets and impulses. Needs the velocities before the first impulse of the cause.
 /// @param impulse   where to start from
-/// @param pushed    as of PairTargets
+/// @param parting   of its pair
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
-               const ContactImpulse& impulse, Cause cause, bool pushed, ContactRow& row);
+               const ContactImpulse& impulse, Cause cause, const Parting& parting, ContactRow& row);
 
 /// The nearest impulse that friction allows.
 inline Vec4 clamped_to_ball(const Vec4& impulse, double radius) {

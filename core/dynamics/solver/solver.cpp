@@ -153,18 +153,24 @@ void for_each_row(StepData& step, std::size_t island, const Visit& visit) {
 
 void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
     const bool made = step.has_rows[island];
-    for_each_row(step, island, [&](ContactRow& row, std::size_t place) {
+    const Parting parting = parting_of(simulation, step, island);
+    const auto start = [&](std::size_t place, const Parting& of_pair, ContactRow& row) {
         const Contact contact = step.contacts[place];
         if (!made) row = make_row(simulation, step, contact);
-        const ContactImpulse start =
-            cause == Cause::kLoad ? step.impulses[place] : ContactImpulse{};
-        start_row(simulation, step, contact, start, cause, step.pushed[island] != 0, row);
+        const ContactImpulse last = cause == Cause::kLoad ? step.impulses[place] : ContactImpulse{};
+        start_row(simulation, step, contact, last, cause, of_pair, row);
         if (!simulation.needs.rolling) return;
         RollingRow& rolling = rolling_row_of(step, row);
         if (!made) rolling = make_rolling_row(simulation, step, row);
         start_rolling_row(row, cause == Cause::kLoad ? step.angular_impulses[place] : Bivector{},
                           rolling);
-    });
+    };
+    ContactRow* row = rows_of(step, island).data();
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        const Parting of_pair = parting.at(step, {run.begin, run.end});
+        for (std::size_t place = run.begin; place < run.end; ++place) start(place, of_pair, *row++);
+    }
     step.has_rows[island] = 1;
 }
 

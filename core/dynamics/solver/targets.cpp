@@ -69,8 +69,22 @@ ContactTargets targets_of_blow(const Approach& approach, double s, double h, dou
 
 }  // namespace
 
+Parting Parting::at(const StepData& step, Range contacts) const {
+    Parting of = *this;
+    double load = 0;
+    if (pushed)
+        for (std::size_t i = contacts.begin; i < contacts.end; ++i) load += step.impulses[i].normal;
+    if (load > 0) of.part = std::max(0.0, 1 - load / (kPartedWeight * weight));
+    return of;
+}
+
+Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island) {
+    return {step.pushed[island] != 0,
+            step.islands.falling_mass[island] * (step.h * simulation.settings.gravity.norm())};
+}
+
 PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
-                         Cause cause, bool pushed)
+                         Cause cause, const Parting& parting)
     : cause_(cause),
       soft_(simulation.settings.solver == Solver::kSoft),
       bounces_(cause == Cause::kBlow || simulation.needs.restitution),
@@ -78,7 +92,9 @@ PairTargets::PairTargets(const Simulation& simulation, const StepData& step, con
       slop_(slop_of(simulation, contact.a, contact.b)),
       // Acts on the second half of the sub-step only, so that it has to be twice as large.
       fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()),
-      bias_(pushed ? std::min(fastest_, kBiasPart / h_ * kPushedBias * slop_) : fastest_) {
+      bias_(parting.pushed
+                ? std::min(fastest_, parting.part * (kBiasPart / h_ * kPushedBias * slop_))
+                : fastest_) {
     if (bounces_) approach_ = approach_of(simulation, step, contact);
 }
 

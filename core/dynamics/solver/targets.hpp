@@ -29,13 +29,25 @@ struct Approach {
     double through = 0;  ///< how deep they may overlap until the next sub-step sees it as one [m]
 };
 
+/// How the load of an island takes overlap away: by itself, or as far as a push does not.
+struct Parting {
+    bool pushed = false;  ///< see is_pushed()
+    double weight = 0;    ///< impulse of gravity on the island's bodies in a sub-step [N s]
+    double part = 1;      ///< of what the load does beside a push; see at()
+
+    /// Of contacts of one pair, by the impulses that they start from. Where bodies cannot part, as
+    /// where they are too thick for the walls between which they start, every sweep presses them
+    /// together more, and the next step goes on from there, until they burst apart.
+    Parting at(const StepData& step, Range contacts) const;
+};
+Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island);
+
 /// The targets of the contacts of two bodies that have one normal.
 class PairTargets {
   public:
     /// @param contact   any of them
-    /// @param pushed    of their island, see is_pushed()
     PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
-                Cause cause, bool pushed);
+                Cause cause, const Parting& parting);
     /// @param velocity   along the normal, at which the bodies part before the first impulse of the
     ///                   cause [m/s]
     ContactTargets at(double separation, double velocity) const;

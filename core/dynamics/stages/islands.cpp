@@ -93,6 +93,12 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
             most_mass_[island] = std::max(most_mass_[island], type.mass);
         }
     }
+    islands.falling_mass.assign(count, 0);
+    for (BodyId id = 0; id < parent_.size(); ++id) {
+        const TypeProperties& type = simulation.type_of(id);
+        const std::uint32_t island = number_[root_of(id)];
+        if (type.falls && island != kNone) islands.falling_mass[island] += type.mass;
+    }
     resize_anew(islands.runs, member_.size());
     counting_sort(
         member_.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,

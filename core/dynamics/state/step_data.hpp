@@ -53,6 +53,7 @@ struct Islands {
     std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
                                            ///< kNotColoured
     std::vector<std::uint8_t> held;        ///< each island's: contacts do not move some body
+    std::vector<double> falling_mass;      ///< each island's: of what gravity pulls at [kg]
     std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }

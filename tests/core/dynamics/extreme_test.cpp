@@ -9,6 +9,7 @@
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/world.hpp"
+#include "core/shape/cubinder.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -164,6 +165,36 @@ TEST(Extreme, OverlapInANarrowWedgeIsPushedOut) {
     add(bodies, box, {0.33992, 0.37593, 0, 0}, Vec4::Zero(), {}, lean);
     add(bodies, plane_type(-Vec4::UnitX(), -0.60031));
     expect_pushed_out(bodies);
+}
+
+/// Between walls that leave them too little room: every step pressed them together more, until they
+/// burst apart at 4 to 130 m/s.
+TEST(Extreme, WhatCannotPartDoesNotBurstApart) {
+    const double radius = 0.3;
+    for (const double steps : {240.0, 960.0})
+        for (const double overlap : {0.004, 0.01, 0.02}) {
+            const double side = (1 - overlap) * radius, up = std::sqrt(3.0) * side;
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitY(), 0, 0.3));
+            for (const double x : {1.0, -1.0})
+                add(bodies, plane_type(x * Vec4::UnitX(), -2 * side, 0.3));
+            BodyType log = sphere_type(radius, 1);
+            log.friction = 0.3;
+            Cubinder shape;
+            shape.radius = radius, shape.size = {1.7, 1.7};
+            complete(shape);
+            log.shape = shape;
+            add(bodies, log, {-side, 0.99 * side, 0, 0});
+            add(bodies, log, {side, 0.99 * side, 0.01, 0});
+            add(bodies, log, {0.02 * side, side + up, 0, 0.01});
+            World world(bodies, impulse());
+            double fastest = 0;
+            for (int i = 0; i < 3 * steps; ++i) {
+                world.step(1 / steps);
+                for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
+            }
+            EXPECT_LT(fastest, 0.2) << steps << " steps/s, overlap " << overlap;
+        }
 }
 
 TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
