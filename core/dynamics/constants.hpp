@@ -61,9 +61,9 @@ constexpr double kBiasPart = 0.05;
 constexpr double kPushedBias = 0.25;
 
 /// Load of a pair at which it does no more, in the weight of its island, usual 2: only what cannot
-/// part is pressed together by so much. More, and logs that are too thick for the walls between
-/// which they start burst apart (without a bound at 7 m/s); less, and what rests on little does not
-/// part.
+/// part is pressed together by so much. At 1.2 to 4 logs that are too thick for the walls between
+/// which they start stay there, without a bound they burst apart at 7 m/s; below 1 what carries all
+/// of its island would do nothing.
 constexpr double kPartedWeight = 2;
 
 /// Sweeps of a push, at most: with 2, 4 and 8 a wall of 20 rows rests alike. More cost more while

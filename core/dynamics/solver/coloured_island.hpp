@@ -31,16 +31,20 @@ struct OneThread {
     }
 };
 
-/// What work(Range) returns of pieces of a range, see kSumPiece, in their order: the same for any
-/// number of threads.
+/// Calls work(place, Range) for the pieces of a range, see kSumPiece: the same for any number of
+/// threads.
+template <class Threads, class Work>
+void for_pieces(const Threads& threads, Range all, const Work& work) {
+    threads.for_bodies(all, [&](Range some) {
+        for (std::size_t i = some.begin; i < some.end; i += kSumPiece)
+            work((i - all.begin) / kSumPiece, Range{i, std::min(i + kSumPiece, some.end)});
+    });
+}
+/// What work(Range) returns of them, in their order.
 template <class Threads, class Work>
 auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
     std::vector<decltype(work(all))> results((all.end - all.begin + kSumPiece - 1) / kSumPiece);
-    threads.for_bodies(all, [&](Range some) {
-        for (std::size_t i = some.begin; i < some.end; i += kSumPiece)
-            results[(i - all.begin) / kSumPiece] =
-                work(Range{i, std::min(i + kSumPiece, some.end)});
-    });
+    for_pieces(threads, all, [&](std::size_t place, Range piece) { results[place] = work(piece); });
     return results;
 }
 

@@ -66,6 +66,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
     for (int i = 0; goes_on(i); ++i) {
         Sweep sweep = sweep_of(Pass::kSolve, effort, i);
         sweep.adjoint = sweep.backward;
+        // Before that it does not end, whatever is left.
         sweep.measured &= i + 1 >= std::min(effort.least, effort.sweeps);
         if (sweep.backward && directions) directions->go_on();
         if (sweep.backward && !directions) directions.emplace(island, threads);

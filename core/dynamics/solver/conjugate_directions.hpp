@@ -136,12 +136,9 @@ class ConjugateDirections {
     /// What work(stage, bodies) returns of pieces of the bodies, in their order.
     template <class Work>
     std::span<const BodySums> sums_of(const Work& work) const {
-        const Range all = island_.bodies();
         const std::span<BodySums> sums = island_.body_sums();
-        threads_.for_bodies(all, [&](Range bodies) {
-            for (std::size_t i = bodies.begin; i < bodies.end; i += kSumPiece)
-                sums[(i - all.begin) / kSumPiece] =
-                    work(island_.stage(), Range{i, std::min(i + kSumPiece, bodies.end)});
+        for_pieces(threads_, island_.bodies(), [&](std::size_t place, Range bodies) {
+            sums[place] = work(island_.stage(), bodies);
         });
         return sums;
     }

@@ -35,7 +35,8 @@ struct Parting {
     double weight = 0;    ///< impulse of gravity on the island's bodies in a sub-step [N s]
     double part = 1;      ///< of what the load does beside a push; see at()
 
-    /// Of contacts of one pair, by the impulses that they start from. Where bodies cannot part, as
+    /// Of contacts of one pair, by the impulses that they start from; without weight none is left
+    /// beside any. Where bodies cannot part, as
     /// where they are too thick for the walls between which they start, every sweep presses them
     /// together more, and the next step goes on from there, until they burst apart.
     Parting at(const StepData& step, Range contacts) const;

@@ -94,7 +94,10 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         }
     }
     islands.falling_mass.assign(count, 0);
-    for (BodyId id = 0; id < parent_.size(); ++id) {
+    // Without gravity or pushes nothing asks for it.
+    const PhysicsSettings& settings = simulation.settings;
+    const bool weighs = settings.solver == Solver::kImpulse && !settings.gravity.isZero(0);
+    for (BodyId id = 0; weighs && id < parent_.size(); ++id) {
         const TypeProperties& type = simulation.type_of(id);
         const std::uint32_t island = number_[root_of(id)];
         if (type.falls && island != kNone) islands.falling_mass[island] += type.mass;

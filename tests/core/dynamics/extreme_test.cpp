@@ -168,7 +168,7 @@ TEST(Extreme, OverlapInANarrowWedgeIsPushedOut) {
 }
 
 /// Between walls that leave them too little room: every step pressed them together more, until they
-/// burst apart at 4 to 130 m/s.
+/// burst apart at 0.5 to 44 m/s.
 TEST(Extreme, WhatCannotPartDoesNotBurstApart) {
     const double radius = 0.3;
     for (const double steps : {240.0, 960.0})
