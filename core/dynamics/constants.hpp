@@ -155,6 +155,26 @@ constexpr double kLongestStep = 64;
 /// a plane).
 constexpr double kMostConjugateFriction = 1;
 
+/// How fast bodies are that stand still (see hold_still()), as a part of what gravity gives them in
+/// a sub-step, usual 2.5e-4. More, and towers of small cubes sway (at 0.01 six of 60 that start
+/// with gaps by more than 0.2 % of a cube a second); less, and the rounding of what stands still
+/// has its load solved anew all the time.
+constexpr double kStandsStill = 2.5e-4;
+
+/// What holds them, as a multiple of the mass that it moves in a sub-step, usual 1e8: piles of
+/// small boards and cubes rest alike from 1e7 to 1e10. Less, and high towers still bend; more, and
+/// rounding shakes them (at 1e12).
+constexpr double kStaticStiffness = 1e8;
+
+/// How often it is solved, without the points that then pull, at most, usual 12. Fewer, and what
+/// has landed leans (at 2 six of 60 towers by more than 5 % of a cube); 20 are no better.
+constexpr int kStaticRounds = 12;
+
+/// Products of blocks that it takes, at most, for each body, usual 4; a tower takes 2. More, and
+/// walls, heaps and all that has loops are solved too, where what lets go is seldom right (9 of
+/// 1800 times in a wall of three boxes a row), for up to four times the time of a step.
+constexpr std::size_t kStaticWork = 4;
+
 /// Contacts from which on an island that is held (some body touches one that contacts do not move)
 /// is coloured and solved in float, eight at a time and along conjugate directions, usual 20; fewer
 /// are solved in double, one by one. More, and small stacks tremble (at 64 towers of seven boxes by

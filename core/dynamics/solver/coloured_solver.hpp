@@ -5,6 +5,7 @@
 
 #include "core/dynamics/solver/blow.hpp"
 #include "core/dynamics/solver/conjugate_directions.hpp"
+#include "core/dynamics/solver/static_loads.hpp"
 
 namespace tesserae {
 
@@ -193,6 +194,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    hold_still(simulation, step, island);
     step.pushed[island] = is_pushed(simulation, step, island);
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();

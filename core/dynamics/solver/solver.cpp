@@ -8,6 +8,7 @@
 #include "core/dynamics/solver/coloured_solver.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/solver/rolling_row.hpp"
+#include "core/dynamics/solver/static_loads.hpp"
 
 namespace tesserae {
 namespace {
@@ -369,6 +370,7 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return solve_coloured_island(simulation, step, island, OneThread{});
+    hold_still(simulation, step, island);
     step.pushed[island] = is_pushed(simulation, step, island);
     start_rows(simulation, step, island, Cause::kLoad);
     const std::span<ContactRow> rows = rows_of(step, island);

@@ -305,7 +305,8 @@ TEST(Rest, OfAPyramid) {
 }
 
 /// Twelve logs, 5, 4 and 3, between walls with some slack: where they lie on each other a hair
-/// aslant both ends of what they share must carry.
+/// aslant both ends of what they share must carry. With more slack they roll off each other first,
+/// more slowly the better their loads are solved.
 TEST(Rest, OfAPileOfLogsBetweenWalls) {
     constexpr double kRadius = 0.3;
     for (const double slack : {1e-3, 0.01, 0.03}) {
@@ -323,7 +324,7 @@ TEST(Rest, OfAPileOfLogsBetweenWalls) {
                     {0, kRadius * (1 + row * std::sqrt(3.0)), kRadius * (2 * i + row - 4), 0},
                     Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
         World world(bodies, PhysicsSettings{});
-        for (int i = 0; i < 2400; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
+        for (int i = 0; i < 3600; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
         for (BodyId id = 5; id < bodies.size(); ++id)
             EXPECT_LT(world.bodies().velocity[id].norm(), 2e-3) << slack;
     }
