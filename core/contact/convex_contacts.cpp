@@ -26,7 +26,7 @@ constexpr double kSamePoint = 1e-6;
 constexpr double kAsNear = 1e-7;
 
 // What a point is called: what kind it is, whose, and of which vertices.
-enum class PointKind : std::uint32_t { kNearest, kVertex, kEdgeBegin, kEdgeEnd };
+enum class PointKind : std::uint32_t { kNearest, kVertex, kEdgeBegin, kEdgeEnd, kCrossing };
 std::uint32_t name_of(PointKind kind, bool of_b, std::uint32_t first, std::uint32_t second) {
     return static_cast<std::uint32_t>(kind) << 28 | (of_b ? 1u << 27 : 0u) | first << 12 | second;
 }
@@ -119,7 +119,8 @@ class PieceContacts {
           points_(scratch.points),
           sides_(scratch.sides) {}
 
-    /// Corners of a piece that lie over a cell.
+    /// Corners of a piece that lie over a cell, and where the cell's edges cross a piece with an
+    /// area, as of a cubinder that lies on a narrower box.
     /// @param of_b   the piece is b's and the cell a's, or the other way round
     void add_over_cell(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell) {
         const double rise = (of_b ? 1 : -1) * cell.plane.normal.dot(normal_);
@@ -128,6 +129,9 @@ class PieceContacts {
         add_corners(piece, of_b, [&](const Vec4& p) {
             return (cell.plane.normal.dot(p) - cell.plane.offset) / rise;
         });
+        // Of a disc times something of two dimensions.
+        if (piece.top.radius > 0 && piece.top.axes.trace() < 2.5)
+            add_crossings(piece, of_b, cell, rise);
     }
 
     /// Corners of a piece that lie beside another, neither of them flat, and look the same way.
@@ -196,6 +200,30 @@ class PieceContacts {
             };
             if (part.begin > 0) add(p + part.begin * d, name(PointKind::kEdgeBegin));
             if (part.end < 1) add(p + part.end * d, name(PointKind::kEdgeEnd));
+        }
+    }
+
+    /// Where edges of a cell lie over a piece that is level in two dimensions.
+    void add_crossings(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell,
+                       double rise) {
+        // Of the disc's plane: up from the piece and across it.
+        const Vec4 up = stable_normalized(piece.top.axes * normal_);
+        Vec4 across = Vec4::Zero();
+        for (int i = 0; i < 4; ++i) {
+            const Vec4 axis = piece.top.axes.col(i) - up[i] * up;
+            if (axis.squaredNorm() > across.squaredNorm()) across = axis;
+        }
+        const Vec4& level = piece.vertices[0];
+        sides_.flat = piece.sides, sides_.round = piece.round_sides;
+        for (const auto& [from, to] : cell.edges) {
+            const Vec4 &p = cell.vertices[from], d = cell.vertices[to] - p;
+            const double slope = across.dot(d), t = -across.dot(p - level) / slope;
+            if (slope == 0 || !(t >= 0 && t <= 1)) continue;
+            const Vec4 on_edge = p + t * d;
+            const Vec4 on_piece = on_edge - up.dot(on_edge - level) / up.dot(normal_) * normal_;
+            if (!is_within(on_piece, sides_, border_)) continue;
+            add_point(on_piece, (cell.plane.normal.dot(on_piece) - cell.plane.offset) / rise, of_b,
+                      name_of(PointKind::kCrossing, !of_b, cell.names[from], cell.names[to]));
         }
     }
 

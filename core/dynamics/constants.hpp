@@ -126,6 +126,12 @@ constexpr int kFurther = 3;
 /// another by 3 mm/s at 10, 14 and 40 iterations); more only cost more.
 constexpr int kLeastSweeps = 8;
 
+/// How many times as much as it was (or the tolerance) the residual is once sweeps lead away, usual
+/// 100: bodies that friction jams between walls may else leave at 100 m/s and more in one step, as
+/// each pair of sweeps makes their impulses half as large again. Less, and directions that pass
+/// over a hill end there.
+constexpr double kLedAway = 100;
+
 /// Part of the tolerance below which a load that goes along no conjugate directions ends before
 /// that, usual 0.1: one body on the ground is solved by a sweep or two. More, and slow swaying
 /// ends so too; less, and all that rests costs as much as what sways.

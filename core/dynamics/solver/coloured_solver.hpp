@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "core/dynamics/solver/blow.hpp"
@@ -60,7 +61,7 @@ template <class Threads>
 double iterate_along_conjugates(const ColouredIsland& island, const Effort& effort,
                                 const Threads& threads, LaneCount lanes) {
     std::optional<ConjugateDirections<Threads>> directions;
-    double residual = 0;
+    double residual = 0, smallest = std::numeric_limits<double>::infinity();
     const auto goes_on = [&](int i) {
         return i < effort.sweeps || (i < effort.further && directions && directions->holds());
     };
@@ -73,6 +74,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
         if (sweep.backward && !directions) directions.emplace(island, threads);
         residual = directions ? sweep_coloured(island, sweep, threads, lanes, *directions)
                               : sweep_coloured(island, sweep, threads, lanes);
+        if (sweep.measured && effort.leads_away(residual, smallest)) break;
         if (sweep.backward || !directions || i + 1 == std::max(effort.sweeps, effort.further))
             continue;
         const double left = std::max(residual, directions->find());

@@ -181,8 +181,8 @@ bool StaticLoad::creeps() {
         const Places places(*step_, run(n), coloured_);
         const Vec4 at = places.of(begin);
         const double kicks = simulation_->type_of(b).falls - simulation_->type_of(a).falls;
-        const Vec4 v =
-            relative_velocity(*step_, a, at - step_->position[a], b, at - step_->position[b], true);
+        const Vec4 v = relative_velocity(*step_, a, at - step_->position[a], b,
+                                         at - step_->position[b], simulation_->needs.turning);
         fastest = std::max(fastest, (v - kicks * kick).squaredNorm());
         Impulse &of_a = given_[place_of(a)], &of_b = given_[place_of(b)];
         double load = 0;
@@ -204,7 +204,7 @@ bool StaticLoad::creeps() {
         const Vec4 v = step_->velocity[id] + type.inverse_mass * given_[i].straight;
         const Bivector w = step_->angular_velocity[id] +
                            angular_response(*simulation_, *step_, id, given_[i].turning);
-        if (v.norm() + type.radius * norm(w) > kStandsStill * kick.norm()) return true;
+        if (v.norm() + type.arm * norm(w) > kStandsStill * kick.norm()) return true;
     }
     return false;
 }
@@ -217,7 +217,8 @@ void StaticLoad::add_point(std::size_t place, const Vec4& at) {
     point.a = place_of(contact.a), point.b = place_of(contact.b);
     point.friction = friction_of(*simulation_, contact.a, contact.b);
     const Vec4 r_a = at - step_->position[contact.a], r_b = at - step_->position[contact.b];
-    const Vec4 v = relative_velocity(*step_, contact.a, r_a, contact.b, r_b, true);
+    const Vec4 v =
+        relative_velocity(*step_, contact.a, r_a, contact.b, r_b, simulation_->needs.turning);
     const Vec4 slip = v + slip_by_turning(*simulation_, *step_, contact, Cause::kLoad);
     const ContactImpulse& last = step_->impulses[place];
     const Vec4 tangent = last.tangent() - normal.dot(last.tangent()) * normal;
@@ -367,7 +368,6 @@ void StaticLoad::keep() const {
 
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island) {
     if (!may_take_more(simulation.settings) || simulation.settings.gravity.isZero(0)) return;
-    if (!simulation.needs.turning) return;
     if (!step.islands.held[island] || step.was_hit[island]) return;
     thread_local StaticLoad load;
     load.begin(simulation, step, island);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "core/dynamics/constants.hpp"
 #include "core/dynamics/state/step_data.hpp"
@@ -21,6 +22,14 @@ struct Effort {
     /// Whether so many sweeps are enough, the last of which had this residual [m/s].
     bool is_done(int done, double residual) const {
         return residual <= (done < least ? kHardlyAnything : 1) * enough;
+    }
+    /// Whether sweeps lead away from any solution, as where friction jams: see kLedAway.
+    /// @param smallest   residual so far, infinite at first [m/s]
+    bool leads_away(double residual, double& smallest) const {
+        if (enough < 0) return false;
+        if (residual > kLedAway * smallest) return true;
+        smallest = std::min(smallest, std::max(residual, enough));
+        return false;
     }
 };
 /// Whether as many sweeps as by default are asked for: then there may be more where they help.
@@ -112,11 +121,12 @@ inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
 /// @return the residual of the last iteration [m/s]
 template <class SweepAll>
 double iterate(Pass pass, const Effort& effort, const SweepAll& sweep_all) {
-    double residual = 0;
+    double residual = 0, smallest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < effort.sweeps; ++i) {
         const Sweep sweep = sweep_of(pass, effort, i);
         residual = sweep_all(sweep);
-        if (sweep.measured && effort.is_done(i + 1, residual)) break;
+        if (!sweep.measured) continue;
+        if (effort.is_done(i + 1, residual) || effort.leads_away(residual, smallest)) break;
     }
     return residual;
 }

@@ -16,10 +16,6 @@ using namespace tesserae::testing;
 
 std::array<PhysicsSettings, 2> both_solvers() { return {PhysicsSettings{}, soft_settings()}; }
 
-double uniform(std::mt19937_64& random, double least, double most) {
-    return std::uniform_real_distribution<>(least, most)(random);
-}
-
 Bivector random_bivector(std::mt19937_64& random, double most) {
     const Vec4 a = random_vector(random, most), b = random_vector(random, most);
     return {a[0], a[1], a[2], b[0], b[1], b[2]};

@@ -173,10 +173,6 @@ TEST(Stack, CapsulesSideBySideCarryABox) {
         EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
 }
 
-double uniform(std::mt19937_64& random, double least, double most) {
-    return std::uniform_real_distribution<>(least, most)(random);
-}
-
 /// Turned about the vertical.
 Rotor crosswise(std::mt19937_64& random) {
     const double xz = uniform(random, -1.5, 1.5), xw = uniform(random, -1.5, 1.5);

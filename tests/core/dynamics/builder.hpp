@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -84,6 +85,17 @@ inline PhysicsSettings without_gravity() {
 
 inline void run(World& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(kStep);
+}
+
+/// Of its bodies [m/s].
+inline double fastest_of(const World& world) {
+    double fastest = 0;
+    for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
+    return fastest;
+}
+
+inline double uniform(std::mt19937_64& random, double least, double most) {
+    return std::uniform_real_distribution<>(least, most)(random);
 }
 
 inline Vec4 random_vector(std::mt19937_64& random, double half_side) {

@@ -55,6 +55,18 @@ TEST(Sweeps, AreSoManyAtLeastUnlessHardlyAnythingIsLeft) {
     EXPECT_EQ(count(0.25 / kHardlyAnything), 3u);
 }
 
+TEST(Sweeps, EndWhereTheyLeadAway) {
+    const auto count = [](double enough, double growth) {
+        int sweeps = 0;
+        iterate(Pass::kSolve, {.sweeps = 101, .enough = enough, .every = 2},
+                [&](Sweep) { return 1e-3 * std::pow(growth, sweeps++); });
+        return sweeps;
+    };
+    EXPECT_EQ(count(1e-6, 2), 9);       // 2^8 times as large
+    EXPECT_EQ(count(1e-6, 1.01), 101);  // 2.7 times
+    EXPECT_EQ(count(-1, 2), 101) << "all are asked for";
+}
+
 Bodies on_floor() {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
@@ -115,12 +127,6 @@ double mean_speed(const World& world) {
     double sum = 0;
     for (const Vec4& v : world.bodies().velocity) sum += v.norm();
     return sum / static_cast<double>(world.bodies().size());
-}
-
-double fastest_of(const World& world) {
-    double fastest = 0;
-    for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
-    return fastest;
 }
 
 /// Ten sweeps left them at 60 mm/s for ever.

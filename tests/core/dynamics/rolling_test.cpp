@@ -19,10 +19,6 @@ constexpr double kGravity = 10;  // [m/s^2]
 
 std::array<PhysicsSettings, 2> both_solvers() { return {PhysicsSettings{}, soft_settings()}; }
 
-double uniform(std::mt19937_64& random, double least, double most) {
-    return std::uniform_real_distribution<>(least, most)(random);
-}
-
 /// A unit vector of the floor's three directions.
 Vec4 along_floor(std::mt19937_64& random) {
     Vec4 t = random_vector(random, 1);

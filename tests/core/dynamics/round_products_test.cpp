@@ -232,5 +232,32 @@ TEST(RoundProducts, ThatWobbleDownDoNotSinkIn) {
     }
 }
 
+/// Narrower than what it lies on, where only its own edges end what both share: one point bore it,
+/// at another corner each step, between which it sank in (by 0.1 m in a second).
+TEST(RoundProducts, APlankThatRocksOnACubinderDoesNotSinkIn) {
+    for (const double lean : {0.0, 0.02, 0.1})
+        for (const bool fixed : {true, false}) {
+            Bodies bodies;
+            BodyType log = type_of(cubinder(0.1, {0.37, 0.37}));
+            log.friction = 1;
+            log.mass = 1000;
+            log.fixed_position = log.fixed_rotation = fixed;
+            if (!fixed) add(bodies, plane_type(Vec4::UnitY(), -0.1, 1));
+            add(bodies, log);
+            BodyType plank = box_type({0.4, 0.02, 0.2, 0.2});
+            plank.friction = 1;
+            // Rolled aside by as much as it leans.
+            const Rotor turn = exp(Bivector{-0.5 * lean, 0, 0, 0, 0, 0});
+            const Vec4 up = rotate(turn, Vec4::UnitY()), along = rotate(turn, Vec4::UnitX());
+            add(bodies, plank, 0.11 * up - 0.1 * lean * along, Vec4::Zero(), {}, turn);
+            World world(bodies, PhysicsSettings{});
+            double deepest = 0;
+            for (int i = 0; i < 480; ++i)
+                deepest = std::max(deepest, world.step(kStep).penetration);
+            EXPECT_LT(deepest, 5e-4) << lean << (fixed ? " fixed" : " free");
+            EXPECT_GT(world.bodies().position.back()[1], 0.105) << lean;
+        }
+}
+
 }  // namespace
 }  // namespace tesserae

@@ -56,12 +56,6 @@ double moved_aside(const World& world, const Bodies& start) {
     return largest;
 }
 
-double fastest_of(const World& world) {
-    double fastest = 0;
-    for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
-    return fastest;
-}
-
 /// Of 24 towers without gaps six swayed, by up to 2 % of a cube a second.
 TEST(StaticLoads, HoldHighTowersOfSmallCubesStill) {
     for (const double size : {0.01, 0.019, 0.03}) {
