@@ -174,7 +174,8 @@ bool StaticLoad::couple() {
 bool StaticLoad::creeps() {
     const Vec4 kick = step_->h * simulation_->settings.gravity;
     const double jammed = kPartedWeight * step_->islands.falling_mass[island_] * kick.norm();
-    double fastest = 0;  // squared, of bodies that touch against each other, before gravity
+    // Squared, at the first point of each run: what tips over an edge is held there all the way.
+    double fastest = 0;
     given_.assign(bodies_.size() + 1, {});
     for (const std::uint32_t n : runs_) {
         const auto [begin, end, a, b] = run(n);
