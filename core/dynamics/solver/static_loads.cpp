@@ -95,8 +95,6 @@ class Places {
 /// The load of one island.
 class StaticLoad {
   public:
-    StaticLoad() = default;
-
     void begin(const Simulation& simulation, StepData& step, std::size_t island) {
         simulation_ = &simulation, step_ = &step;
         runs_ = step.islands.runs_in(island);
