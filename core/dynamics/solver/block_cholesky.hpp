@@ -21,7 +21,6 @@ class BlockCholesky {
     static constexpr std::size_t kSize = 12, kMostRows = 64;
     using Block = Eigen::Matrix<double, kSize, kSize>;
     using Part = Eigen::Matrix<double, kSize, 1>;
-    using Columns = Eigen::Matrix<double, kSize, Eigen::Dynamic, Eigen::ColMajor, kSize, 32>;
 
     /// @param rows   <= kMostRows
     void begin(std::size_t rows);
