@@ -239,9 +239,7 @@ void StaticLoad::add_point(std::size_t place, const Vec4& at) {
     }
     const double response = point.along[0].a.squaredNorm() + point.along[0].b.squaredNorm();
     point.stiffness = response > 0 ? kStaticStiffness / response : 0;
-    const double touching = kRestingGap * std::min(simulation_->type_of(contact.a).slop,
-                                                   simulation_->type_of(contact.b).slop);
-    point.touches = contact.separation <= touching;
+    point.touches = contact.separation <= resting_gap(*simulation_, contact.a, contact.b);
     point.held = point.touches ? point.friction > 0 ? 4 : 1 : 0;
 }
 

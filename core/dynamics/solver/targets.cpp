@@ -69,6 +69,10 @@ ContactTargets targets_of_blow(const Approach& approach, double s, double h, dou
 
 }  // namespace
 
+double resting_gap(const Simulation& simulation, BodyId a, BodyId b) {
+    return kRestingGap * slop_of(simulation, a, b);
+}
+
 Parting Parting::at(const StepData& step, Range contacts) const {
     Parting of = *this;
     double load = 0;

@@ -36,9 +36,9 @@ struct Parting {
     double part = 1;      ///< of what the load does beside a push; see at()
 
     /// Of contacts of one pair, by the impulses that they start from; without weight none is left
-    /// beside any. Where bodies cannot part, as
-    /// where they are too thick for the walls between which they start, every sweep presses them
-    /// together more, and the next step goes on from there, until they burst apart.
+    /// beside any. Where bodies cannot part, as where they are too thick for the walls between
+    /// which they start, every sweep presses them together more, and the next step goes on from
+    /// there, until they burst apart.
     Parting at(const StepData& step, Range contacts) const;
 };
 Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island);
@@ -66,6 +66,9 @@ class PairTargets {
     double bias_;          ///< the same of a load of Solver::kImpulse
     Approach approach_;
 };
+
+/// Points of two bodies that are no farther apart touch, see kRestingGap [m].
+double resting_gap(const Simulation& simulation, BodyId a, BodyId b);
 
 /// The velocity of body b relative to body a at the contact point [m/s].
 /// @param turning   see Needs

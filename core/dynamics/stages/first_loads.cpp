@@ -7,6 +7,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/dynamics/solver/targets.hpp"
 #include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
@@ -23,11 +24,6 @@ constexpr double kUpward = 0.1;
 constexpr std::uint8_t kStands = 1, kIsCarried = 2, kStandsFast = 4;
 
 Vec4 up_of(const Simulation& simulation) { return stable_normalized(-simulation.settings.gravity); }
-
-/// Points that are farther apart do not touch yet [m].
-double touching(const Simulation& simulation, const ContactList::Run& run) {
-    return kRestingGap * std::min(simulation.type_of(run.a).slop, simulation.type_of(run.b).slop);
-}
 
 }  // namespace
 
@@ -48,7 +44,7 @@ bool FirstLoads::look(const Simulation& simulation, const StepData& step, Schedu
             const ContactList::Run run = step.contacts.nth_run(r);
             const double part = up.dot(step.contacts.normal(run.begin));
             if (!(std::abs(part) > kUpward)) continue;
-            const double touches = touching(simulation, run);
+            const double touches = resting_gap(simulation, run.a, run.b);
             std::uint8_t seen = 0;
             for (std::size_t i = run.begin; i < run.end; ++i) {
                 if (step.contacts.separation(i) <= touches) seen |= kStands;
@@ -104,7 +100,7 @@ void FirstLoads::list_places(const Simulation& simulation, const StepData& step,
     places_.clear();
     for (const Support* s = begin; s != end; ++s) {
         const ContactList::Run run = step.contacts.nth_run(s->run);
-        const double touches = touching(simulation, run);
+        const double touches = resting_gap(simulation, run.a, run.b);
         for (std::size_t i = run.begin; i < run.end; ++i) {
             if (!(step.contacts.separation(i) <= touches)) continue;
             const Vec4 r = step.contacts.point(i) - step.position[s->upper];
