@@ -58,6 +58,7 @@ struct Case {
 
 // Scenes are text, as a user writes them.
 const std::string kSphere = "shape = \"hypersphere\"\nradius = 0.5\n";
+const std::string kCube = "shape = \"hyperbox\"\nsize = [1, 1, 1, 1]\n";
 const std::string kSmooth = "friction = 0\n", kFixedRotation = "fixed = [\"rotation\"]\n";
 const std::string kFixed = "fixed = [\"position\", \"rotation\"]\n";
 const std::string kAbove = "position = [0, 90, 0, 0]\n";  // alone: it does not fall as far
@@ -137,6 +138,8 @@ std::vector<Case> all_cases() {
          heap(cube, alone)},
         {"restitution", "restitution", kStep, 240, heap(kSphere, alone + "restitution = 1\n"),
          heap(kSphere, alone)},
+        {"seams", "seams", kStep, 240, heap(kSphere, body(kCube + kFixed + kAbove)),
+         heap(kSphere, body(kSphere + kFixed + kAbove))},
         {"colours_of_towers", "", kColours, 30, towers(""), towers("")},
         {"colours_of_heap", "", kColours, 240, heap(kSphere), heap(kSphere)},
         {"colours_of_pairs", "", kColours, 30, pairs, pairs},
