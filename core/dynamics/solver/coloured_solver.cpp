@@ -56,8 +56,9 @@ void begin_changes(const ColouredStage& stage, Range bodies) {
         coloured.changes[i].rest[3] = static_cast<float>(inverse);
         if (!coloured.turns_unevenly || stage.made) continue;
         coloured.inverse_inertias[i] =
-            type.isotropic ? packed(inverse)
-                           : packed(stage.step.inverse_inertia[id], stage.mass_unit);
+            type.isotropic
+                ? packed(inverse)
+                : packed(without_specks(stage.step.inverse_inertia[id]), stage.mass_unit);
     }
 }
 

@@ -71,6 +71,28 @@ struct Responses {
     std::array<F, 10> along;
     std::array<F, 21> across;
 };
+/// x, unless it is a speck beside this.
+template <class F>
+[[gnu::always_inline]] inline F unless_speck(F x, F beside) {
+    return magnitude(x) < static_cast<float>(kSpeck) * beside ? F{} : x;
+}
+template <class F>
+[[gnu::always_inline]] inline void leave_specks_out(CentreResponse<F>& response) {
+    F straight{}, turning{};
+    for (std::size_t i = 0; i < 4; ++i) straight = larger(straight, response.straight[i][i]);
+    for (std::size_t i = 0; i < 6; ++i) turning = larger(turning, response.turning[i][i]);
+    const F coupled = square_root(straight * turning);
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = 0; j < 6; ++j)
+            response.turning[i][j] = unless_speck(response.turning[i][j], turning);
+        for (std::size_t j = 0; j < 4; ++j)
+            response.coupled[i][j] = unless_speck(response.coupled[i][j], coupled);
+    }
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            response.straight[i][j] = unless_speck(response.straight[i][j], straight);
+}
+
 /// The planes that turn in xn yn zn and in xy xz yz, see FrameScrew.
 constexpr std::array<std::size_t, 3> kAlong = {2, 4, 5}, kAcross = {0, 1, 3};
 template <bool kFriction, class F, bool kUneven>
@@ -81,7 +103,8 @@ template <bool kFriction, class F, bool kUneven>
     add_turning(pair.inverse_a(), pair.centre_a(), world);
     add_turning(pair.inverse_b(), pair.centre_b(), world);
     for (std::size_t i = 0; i < 4; ++i) world.straight[i][i] += pair.inverse_mass();
-    const CentreResponse<F> of = reflected(frame, world);
+    CentreResponse<F> of = reflected(frame, world);
+    leave_specks_out(of);
     to.along[0] = of.straight[3][3];
     for (std::size_t i = 0; i < 3; ++i) {
         to.along[in_triangle<4>(0, 1 + i)] = of.coupled[kAlong[i]][3];
@@ -235,6 +258,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
             std::array<F, 6> inverse;
             F slide;
             invert<F>(tangent_response(response.across, at), least, inverse, slide);
+            for (F& entry : inverse) entry = unless_speck(entry, slide);
             store_all(lane, inverse, tangents.mass);
             lane.store(slide, tangents.slide_mass);
         }

@@ -185,9 +185,10 @@ BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
         const TypeProperties& type = stage.simulation.type_of(id);
         if (coloured.turns_unevenly)
             coloured.inertias[i] =
-                type.isotropic ? BodyInertia{}
-                               : columns(world_map(type.inertia, type, stage.step.rotor[id]),
-                                         1 / stage.mass_unit);
+                type.isotropic
+                    ? BodyInertia{}
+                    : columns(without_specks(world_map(type.inertia, type, stage.step.rotor[id])),
+                              1 / stage.mass_unit);
         sums[0] += energy_of(coloured, i, load(coloured.changes[i]));
         if (type.falls) sums[1] += 0.5 * type.mass / stage.mass_unit * kick_squared;
     }
