@@ -104,6 +104,9 @@ class StaticLoad {
     bool list_bodies();
     /// @return whether they touch so that solve() takes little work
     bool couple();
+    /// Takes the memory of a solve, whether there is one or not: a thread that has seen an island
+    /// once then takes no more.
+    void reserve();
     /// Whether they move, but slower than gravity would make them in the sub-step, and are not
     /// pressed together by more than their weight, as where they cannot part.
     bool creeps();
@@ -167,6 +170,13 @@ bool StaticLoad::couple() {
         if (std::max(a, b) < bodies_.size()) matrix_.couple(a, b);
     }
     return matrix_.arrange() <= kStaticWork * bodies_.size();
+}
+
+void StaticLoad::reserve() {
+    const std::size_t bodies = bodies_.size() + 1;
+    given_.reserve(bodies), roots_.reserve(bodies);
+    motion_.reserve(bodies), recalled_motion_.reserve(bodies), next_.reserve(bodies);
+    points_.reserve(step_->islands.contacts[island_]);
 }
 
 bool StaticLoad::creeps() {
@@ -368,7 +378,9 @@ void hold_still(const Simulation& simulation, StepData& step, std::size_t island
     if (!step.islands.held[island] || step.was_hit[island]) return;
     thread_local StaticLoad load;
     load.begin(simulation, step, island);
-    if (!load.list_bodies() || !load.couple() || !load.creeps()) return;
+    if (!load.list_bodies() || !load.couple()) return;
+    load.reserve();
+    if (!load.creeps()) return;
     load.list_points();
     load.solve();
     if (load.is_better()) load.keep();
