@@ -181,6 +181,13 @@ constexpr int kStaticRounds = 12;
 /// 1800 times in a wall of three boxes a row), for up to four times the time of a step.
 constexpr std::size_t kStaticWork = 4;
 
+/// Part of the entries that a body or pair responds by in coloured islands, below which couplings
+/// are none, usual 2^-40: they are what rounding leaves of boxes that lie straight. Less, and
+/// products with them get below float's normal range, where they take a hundred times as long
+/// (towers of ten boxes at rest twice the time of a step); more, and couplings are lost that float
+/// sees.
+constexpr double kSpeck = 0x1p-40;
+
 /// Contacts from which on an island that is held (some body touches one that contacts do not move)
 /// is coloured and solved in float, eight at a time and along conjugate directions, usual 20; fewer
 /// are solved in double, one by one. More, and small stacks tremble (at 64 towers of seven boxes by

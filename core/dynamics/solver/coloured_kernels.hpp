@@ -9,11 +9,7 @@ namespace tesserae {
 /// pairs share movable bodies need kOne, which goes through the lanes in order.
 enum class LaneCount { kOne, kEight };
 
-/// Part of the entries that a body or pair responds by, below which couplings are none: they are
-/// what rounding leaves of boxes that lie straight, and products with them, below float's normal
-/// range, take a hundred times as long (towers of ten boxes at rest twice the time of a step).
-constexpr double kSpeck = 0x1p-40;
-
+/// Without the entries that are specks beside the diagonal, see kSpeck.
 inline BivectorMap without_specks(const BivectorMap& map) {
     const double least = kSpeck * map.diagonal().cwiseAbs().maxCoeff();
     return (map.array().abs() < least).select(BivectorMap::Zero(), map);

@@ -174,7 +174,7 @@ bool StaticLoad::couple() {
 
 void StaticLoad::reserve() {
     const std::size_t bodies = bodies_.size() + 1;
-    given_.reserve(bodies), roots_.reserve(bodies);
+    roots_.reserve(bodies);
     motion_.reserve(bodies), recalled_motion_.reserve(bodies), next_.reserve(bodies);
     points_.reserve(step_->islands.contacts[island_]);
 }
