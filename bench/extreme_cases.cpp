@@ -142,6 +142,17 @@ Bodies row_of_boxes(int count, double mass, double gap) {
     return bodies;
 }
 
+/// A ball that falls 1 m onto five flush boxes of 1 kg.
+Bodies ball_on_tower(double mass, double friction) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, friction, 0), Vec4::Zero());
+    BodyType box = box_type({0.45, 0.5, 0.55, 0.4}, 1);
+    box.friction = friction;
+    for (int i = 0; i < 5; ++i) add(bodies, box, {0, 0.25 + 0.5 * i, 0, 0});
+    add(bodies, sphere_type(0.25, mass, friction, 0), {0, 3.75, 0, 0});
+    return bodies;
+}
+
 /// Restitution 0 but for the last three.
 std::vector<ExtremeCase> blows() {
     std::vector<ExtremeCase> cases;
@@ -156,6 +167,11 @@ std::vector<ExtremeCase> blows() {
                              row_of_balls(6, mass, 0, true), Vec4::UnitX(), false));
     cases.push_back(blow("box of 20 kg hits six of 1 kg, gaps of 3 mm, before a wall",
                          row_of_boxes(6, 20, 0.003), Vec4::UnitX(), false));
+    for (const double friction : {0.9, 1.2})
+        cases.push_back(
+            blow(fmt::format("ball of 1000 kg falls 1 m onto five boxes of 1 kg, friction {:g}",
+                             friction),
+                 ball_on_tower(1000, friction), -Vec4::UnitY(), true));
     cases.push_back(blow("ball of 100 kg hits one of 1 kg before a wall, restitution 0.9",
                          row_of_balls(1, 100, 0.9, true), Vec4::UnitX(), false));
     cases.push_back(blow("ball hits four others, restitution 1", row_of_balls(4, 1, 1, false),

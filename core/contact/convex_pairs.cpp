@@ -31,7 +31,7 @@ void plane_contacts(const std::vector<NamedPoint>& points, const Pose& pose,
     }
     for (ContactPoint& p : near)
         p.point = pose.position + rotation * p.point - 0.5 * p.separation * plane.normal;
-    const std::size_t count = reduce_manifold(near, plane.normal);
+    const std::size_t count = reduce_corners(near, plane.normal);
     for (std::size_t i = 0; i < count; ++i)
         out.add(near[i].feature, -plane.normal, near[i].separation, near[i].point);
 }

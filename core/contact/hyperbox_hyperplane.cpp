@@ -25,7 +25,7 @@ void contacts_between(const Hyperbox& box, const Pose& pose, const Hyperplane& p
         points[count++] = {point, separation, vertex};
     }
 
-    count = reduce_manifold({points.data(), count}, plane.normal);
+    count = reduce_corners({points.data(), count}, plane.normal);
     for (std::size_t i = 0; i < count; ++i)
         out.add(points[i].feature, -plane.normal, points[i].separation, points[i].point);
 }

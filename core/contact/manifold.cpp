@@ -202,4 +202,24 @@ std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal) 
     return kept.size();
 }
 
+std::size_t reduce_corners(std::span<ContactPoint> corners, const Vec4& normal) {
+    if (corners.size() <= kManifoldPoints) return reduce_manifold(corners, normal);
+    const auto is_before = [](const ContactPoint& p, const ContactPoint& q) {
+        return p.separation != q.separation ? p.separation < q.separation : p.feature < q.feature;
+    };
+    std::sort(corners.begin(), corners.end(), is_before);
+    std::size_t count = 0;
+    for (const ContactPoint& corner : corners) {
+        const auto hides = [&](const ContactPoint& deeper) {
+            const Vec4 from = corner.point - deeper.point;
+            const double along = normal.dot(from), higher = corner.separation - deeper.separation;
+            return from.squaredNorm() - along * along < higher * higher;
+        };
+        if (std::none_of(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(count),
+                         hides))
+            corners[count++] = corner;
+    }
+    return reduce_manifold(corners.first(count), normal);
+}
+
 }  // namespace tesserae

@@ -31,4 +31,9 @@ constexpr std::size_t kManifoldInput = 64;
 /// @param normal  unit, of the contact, in the frame of the points
 std::size_t reduce_manifold(std::span<ContactPoint> points, const Vec4& normal);
 
+/// The same of corners of a body at a plane, without those that are behind a deeper one, seen along
+/// the normal by less aside than they are higher. Of a card that lies on it the corners of the
+/// upper face are about as deep as those of the lower one, and would take their places.
+std::size_t reduce_corners(std::span<ContactPoint> corners, const Vec4& normal);
+
 }  // namespace tesserae

@@ -78,6 +78,7 @@ class ColouredIsland {
     ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause,
                    bool friction = true)
         : all_(step.coloured),
+          number_(island),
           place_(step.islands.coloured[island]),
           stage_{simulation,
                  step,
@@ -88,6 +89,7 @@ class ColouredIsland {
                  step.has_rows[island] != 0} {}
 
     const ColouredStage& stage() const { return stage_; }
+    std::size_t number() const { return number_; }  ///< among all islands
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
     /// Of pieces of them, see kSumPiece.
     std::span<BodySums> body_sums() const {
@@ -115,6 +117,7 @@ class ColouredIsland {
 
   private:
     ColouredIslands& all_;
+    std::size_t number_;
     std::uint32_t place_;
     ColouredStage stage_;
 };

@@ -1,5 +1,6 @@
 #include "core/dynamics/solver/coloured_kernels.hpp"
 #include "core/dynamics/solver/coloured_place.hpp"
+#include "core/dynamics/solver/coloured_points.hpp"
 
 // What the impulses of a coloured island's load do, and a part of them; see LoadWork.
 namespace tesserae {
@@ -29,10 +30,11 @@ void scale(std::array<Eight, kSize>& all, float by) {
 
 }  // namespace
 
-double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
+double load_work_of_round(const ColouredStage& stage, std::uint32_t batch, Pass pass) {
     const ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
-    Float8 work = -kEvery.load(normal[batch]) * kEvery.load(coloured.round_relax.target[batch]);
+    Float8 work = -kEvery.load(normal[batch]) * target_of(kEvery, coloured.round_rows[batch].along,
+                                                          coloured.round_relax.target[batch], pass);
     if (coloured.friction)
         work += product(load_all(kEvery, coloured.round_friction[batch].slip), tangent[batch]);
     if (coloured.rolling) {
@@ -42,7 +44,7 @@ double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
     return sum_of(work);
 }
 
-double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
+double load_work_of_general(const ColouredStage& stage, std::uint32_t index, Pass pass) {
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const auto along = load_all(kEvery, coloured.frames[index].motion);
@@ -52,7 +54,8 @@ double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
     Float8 work{};
     for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
         const Place<Float8> at = place_of(kEvery, coloured.rows[row]);
-        const Float8 velocity = along_at(at, along) - kEvery.load(coloured.relax.target[row]);
+        const Float8 velocity = along_at(at, along) - target_of(kEvery, coloured.rows[row].along,
+                                                                coloured.relax.target[row], pass);
         work = fused(kEvery.load(coloured.impulses.normal[row]), velocity, work);
         if (coloured.friction) {
             const LaneVec4<Float8> slip = across_at(at, across);

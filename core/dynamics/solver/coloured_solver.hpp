@@ -192,43 +192,44 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     keep_coloured(coloured, threads);
 }
 
-/// solve_island() of a coloured island.
-template <class Threads>
-void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
-                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
-    hold_still(simulation, step, island);
-    step.pushed[island] = is_pushed(simulation, step, island);
-    const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
-    const ColouredStage& stage = coloured.stage();
-    start_coloured(coloured, threads, lanes);
-    const Effort effort = effort_of_load(simulation, step, island);
-    step.residual[island] = has_conjugates(simulation)
-                                ? iterate_along_conjugates(coloured, effort, threads, lanes)
-                                : iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
-    if (simulation.settings.solver == Solver::kImpulse) keep_coloured(coloured, threads);
-    if (step.pushed[island]) {
-        threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
-        iterate_coloured(coloured, Pass::kPush,
-                         effort_of_push(simulation, step.islands.contacts[island]), threads, lanes);
-    }
-    threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
-}
-
-/// Of the impulses as they are.
-inline LoadWork work_of_load(const ColouredIsland& island) {
+/// Of the impulses as they are, with the targets of a pass.
+inline double work_of_load(const ColouredIsland& island, Pass pass) {
     const ColouredStage& stage = island.stage();
     double work = 0;
     for_all_rows(
         island, OneThread{},
         [&](BatchRange all) {
             for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_round(stage, i);
+                work += load_work_of_round(stage, i, pass);
         },
         [&](BatchRange all) {
             for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_general(stage, i);
+                work += load_work_of_general(stage, i, pass);
         });
-    return {stage.mass_unit * work, energy_of_changes(stage, island.bodies())};
+    return stage.mass_unit * work;
+}
+/// Twice the kinetic energy of what they have changed [J].
+template <class Threads>
+double energy_of_load(const ColouredIsland& island, const Threads& threads) {
+    const std::span<BodySums> sums = island.body_sums();
+    for_pieces(threads, island.bodies(), [&](std::size_t place, Range bodies) {
+        sums[place][0] = energy_of_changes(island.stage(), bodies);
+    });
+    double energy = 0;
+    for (const BodySums& piece : sums) energy += piece[0];
+    return energy;
+}
+
+/// Of the impulses, and of what they have changed.
+template <class Threads>
+void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
+    const ColouredStage& stage = island.stage();
+    const auto left = static_cast<float>(part);
+    for_all_rows(
+        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, left); },
+        [&](BatchRange some) { leave_part_of_general(stage, some, left); });
+    threads.for_bodies(island.bodies(),
+                       [&](Range bodies) { leave_part_of_changes(stage, bodies, left); });
 }
 
 /// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
@@ -236,16 +237,49 @@ inline LoadWork work_of_load(const ColouredIsland& island) {
 template <class Threads>
 bool end_gain(const ColouredIsland& island, const Threads& threads, const Overlap& overlap) {
     if (!overlap.any) return false;
-    const LoadWork load = work_of_load(island);
+    const LoadWork load = {work_of_load(island, Pass::kRelax), energy_of_load(island, threads)};
     if (!load.is_gain(overlap.weight)) return false;
-    const ColouredStage& stage = island.stage();
-    const auto part = static_cast<float>(load.best_part());
-    for_all_rows(
-        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, part); },
-        [&](BatchRange some) { leave_part_of_general(stage, some, part); });
-    threads.for_bodies(island.bodies(),
-                       [&](Range bodies) { leave_part_of_changes(stage, bodies, part); });
+    leave_part_of_load(island, threads, load.best_part());
     return true;
+}
+
+/// What the load starts from has acted; see kRecalledWeight.
+template <class Threads>
+void leave_recalled(const ColouredIsland& island, const Threads& threads) {
+    const Simulation& simulation = island.stage().simulation;
+    const StepData& step = island.stage().step;
+    const double weight = energy_of_fall(simulation, step, island.number());
+    const double energy = energy_of_load(island, threads);
+    if (!(0.5 * energy > LoadWork::least_of_stop(weight))) return;
+    const LoadWork load = {work_of_load(island, Pass::kSolve), energy};
+    if (load.is_too_much(weight, is_stopped(simulation, step, island.number())))
+        leave_part_of_load(island, threads, load.best_part());
+}
+
+/// solve_island() of a coloured island.
+template <class Threads>
+void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+    const bool impulse = simulation.settings.solver == Solver::kImpulse;
+    hold_still(simulation, step, island);
+    step.pushed[island] = is_pushed(simulation, step, island);
+    const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
+    const ColouredStage& stage = coloured.stage();
+    start_coloured(coloured, threads, lanes);
+    const Effort effort = effort_of_load(simulation, step, island);
+    if (step.islands.conjugates[island]) {
+        step.residual[island] = iterate_along_conjugates(coloured, effort, threads, lanes);
+    } else {
+        if (impulse) leave_recalled(coloured, threads);
+        step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
+    }
+    if (impulse) keep_coloured(coloured, threads);
+    if (step.pushed[island]) {
+        threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
+        iterate_coloured(coloured, Pass::kPush,
+                         effort_of_push(simulation, step.islands.contacts[island]), threads, lanes);
+    }
+    threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }
 
 /// relax_island() of a coloured island.

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/dynamics/solver/coloured_place.hpp"
+#include "core/dynamics/solver/contact_row.hpp"
+#include "core/dynamics/solver/rolling_row.hpp"
 #include "core/dynamics/state/type_properties.hpp"
 
 namespace tesserae {
@@ -168,12 +170,12 @@ BodyInertia columns(const BivectorMap& map, double factor) {
 
 }  // namespace
 
-bool has_conjugates(const Simulation& simulation) {
-    return simulation.settings.solver == Solver::kImpulse &&
-           std::all_of(
-               simulation.types.begin(), simulation.types.end(), [](const TypeProperties& type) {
-                   return type.friction <= kMostConjugateFriction && type.rolling_friction == 0;
-               });
+bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
+    if (simulation.settings.solver != Solver::kImpulse) return false;
+    const Needs& needs = simulation.needs;
+    if (needs.strong_friction && friction_of(simulation, a, b) > kMostConjugateFriction)
+        return false;
+    return !needs.rolling || rolling_arm_of(simulation, a, b) == 0;
 }
 
 BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {

@@ -23,10 +23,11 @@ namespace tesserae {
 // recalled impulses have acted: what they and gravity do is much more than what is left to solve,
 // and the rounding of so much would be what slopes are made of (a wall then sways by 4 mm/s).
 
-/// Whether loads go along conjugate directions: friction is nowhere so strong that what a sweep
-/// changes may grow, see kMostConjugateFriction, and nothing has rolling friction, which what rolls
-/// has its full share of, so that no direction leads anywhere.
-bool has_conjugates(const Simulation& simulation);
+/// Whether the load of an island goes along conjugate directions if all of its pairs are such:
+/// friction is not so strong that what a sweep changes may grow, see kMostConjugateFriction, and
+/// there is no rolling friction, which what rolls has its full share of, so that no direction leads
+/// anywhere.
+bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 
 /// The energies of what the impulses that the load starts from have changed, and of what gravity
 /// has.

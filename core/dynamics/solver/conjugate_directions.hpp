@@ -21,7 +21,7 @@ class ConjugateDirections {
         double recalled = 0, weight = 0;  // energies
         for (const BodySums& piece : sums_of([](auto... of) { return weigh_recalled(of...); }))
             recalled += piece[0], weight += piece[1];
-        if (recalled > kRecalledWeight * weight) recalled *= leave_part_of(recalled);
+        if (recalled > LoadWork::least_of_stop(weight)) recalled *= leave_part_of(recalled, weight);
         rounding_ = kFloatStep * kFloatStep * recalled;
         for_all_rows(
             island, threads, [&](BatchRange some) { take_recalled_round(stage, some); },
@@ -98,8 +98,9 @@ class ConjugateDirections {
 
     /// Loads that are more than weights may be none: what ended a blow, and would be replayed. The
     /// part of them that is left is the one that takes the most energy.
+    /// @param recalled, weight   see weigh_recalled()
     /// @return its square
-    double leave_part_of(double recalled) {
+    double leave_part_of(double recalled, double weight) {
         const ColouredStage& stage = island_.stage();
         for_all_rows(
             island_, threads_,
@@ -111,7 +112,10 @@ class ConjugateDirections {
                 begin_recalled_general(stage, some);
                 weigh_general_step(stage, some);
             });
-        const double part = std::clamp(work()[0] / (2 * recalled), 0.0, 1.0);
+        const LoadWork load = {-work()[0], 2 * recalled};
+        const bool stopped = is_stopped(stage.simulation, stage.step, island_.number());
+        if (!load.is_too_much(weight, stopped)) return 1;
+        const double part = load.best_part();
         const auto left = static_cast<float>(part);
         for_bodies([left](auto... of) { leave_part(of..., left); });
         for_all_rows(

@@ -231,14 +231,6 @@ void leave_part(const Simulation& simulation, StepData& step, std::span<ContactR
     }
 }
 
-/// What gravity gives an island's bodies in a sub-step from rest [J].
-double energy_of_fall(const Simulation& simulation, StepData& step, std::size_t island) {
-    double mass = 0;
-    for (const BodyId id : bodies_of(simulation, step, island))
-        if (simulation.type_of(id).falls) mass += simulation.type_of(id).mass;
-    return 0.5 * mass * (step.h * simulation.settings.gravity).squaredNorm();
-}
-
 /// The impulses that the load starts from; see kRecalledWeight.
 void apply_recalled(const Simulation& simulation, StepData& step, std::size_t island) {
     const std::span<ContactRow> rows = rows_of(step, island);
@@ -248,7 +240,8 @@ void apply_recalled(const Simulation& simulation, StepData& step, std::size_t is
     apply_part(simulation, step, rows, 1);
     const double after = work_of<&ContactRow::solve>(simulation, step, rows);
     const LoadWork load = {before, after - before};
-    if (0.5 * load.energy > kRecalledWeight * energy_of_fall(simulation, step, island))
+    if (load.is_too_much(energy_of_fall(simulation, step, island),
+                         is_stopped(simulation, step, island)))
         leave_part(simulation, step, rows, load.best_part());
 }
 

@@ -94,6 +94,15 @@ struct LoadWork {
     /// what a blow has pressed into each other do much that sweeps do not take back in time, and a
     /// row of nine boxes would be thrown back with four times the energy that it had.
     bool is_gain(double allowed) const { return work + 0.5 * energy > allowed; }
+    /// Whether a load does not start from so much: see kRecalledWeight.
+    /// @param energy_of_fall, stopped   energy_of_fall(), is_stopped()
+    bool is_too_much(double energy_of_fall, bool stopped) const {
+        return 0.5 * energy > kRecalledWeight * energy_of_fall || (stopped && is_gain(0));
+    }
+    /// What the energy is at least where is_stopped().
+    static double least_of_stop(double energy_of_fall) {
+        return kRecalledStop * kRecalledStop * energy_of_fall;
+    }
     /// The part of the impulses that leaves least to do, which is no gain.
     double best_part() const { return std::clamp(-work / energy, 0.0, 1.0); }
 };

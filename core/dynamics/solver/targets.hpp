@@ -100,6 +100,13 @@ struct Overlap {
 };
 Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island);
 
+/// What gravity gives an island's bodies in a sub-step from rest [J].
+double energy_of_fall(const Simulation& simulation, const StepData& step, std::size_t island);
+
+/// Whether what contacts do not move gives an island more by what is recalled than kRecalledStop
+/// times what gravity does: something that has hit it is being stopped.
+bool is_stopped(const Simulation& simulation, const StepData& step, std::size_t island);
+
 /// How hard an island's bodies hit each other.
 struct Blow {
     double fastest = 0;   ///< speed at which they meet [m/s]; 0: none does

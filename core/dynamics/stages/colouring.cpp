@@ -7,7 +7,6 @@
 #include <span>
 
 #include "core/counting_sort.hpp"
-#include "core/dynamics/solver/conjugate.hpp"
 #include "core/dynamics/state/room.hpp"
 
 namespace tesserae {
@@ -38,8 +37,6 @@ void size_relax(const Simulation& simulation, std::size_t rows, NormalRelax& rel
 void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
-    resize_anew(coloured.body_sums,
-                coloured.bodies.size() / kSumPiece + coloured.first_body.size());
     size_impulses(coloured.round.size(), coloured.friction, coloured.last_round);
     size_impulses(coloured.round.size(), coloured.friction, coloured.round_direction);
     size_impulses(coloured.general_rows, coloured.friction, coloured.last_general);
@@ -119,7 +116,9 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     resize_anew(coloured.changes, coloured.bodies.size());
     resize_anew(coloured.last_changes, coloured.bodies.size());
-    if (has_conjugates(simulation)) size_directions(coloured);
+    resize_anew(coloured.body_sums,
+                coloured.bodies.size() / kSumPiece + coloured.first_body.size());
+    if (simulation.settings.solver == Solver::kImpulse) size_directions(coloured);
     if (coloured.turns_unevenly) {
         resize_anew(coloured.inverse_inertias, coloured.bodies.size());
         resize_anew(coloured.pair_inertias, coloured.general.size());

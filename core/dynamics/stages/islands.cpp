@@ -26,10 +26,10 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
-    const bool fits = fit_floats(simulation.types), conjugates = has_conjugates(simulation);
+    const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        if (fits && is_coloured(islands, island, conjugates)) {
+        if (fits && is_coloured(islands, island)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {
@@ -43,10 +43,11 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});
 }
 
-bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island, bool conjugates) const {
+bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {
     const std::uint32_t contacts = islands.contacts[island];
     if (!islands.held[island]) return contacts >= coloured_from_.free;
-    const bool unequal = conjugates && most_mass_[island] > kUnequalMasses * least_mass_[island];
+    const bool unequal =
+        islands.conjugates[island] && most_mass_[island] > kUnequalMasses * least_mass_[island];
     return contacts >= (unequal ? coloured_from_.unequal : coloured_from_.held);
 }
 
@@ -79,6 +80,7 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     Islands& islands = step.islands;
     islands.held.assign(count, 0);
     islands.contacts.assign(count, 0);
+    islands.conjugates.assign(count, 1);
     least_mass_.assign(count, std::numeric_limits<double>::infinity());
     most_mass_.assign(count, 0);
     for (std::size_t i = 0; i < member_.size(); ++i) {
@@ -86,6 +88,7 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         const std::uint32_t island = number_[member_[i]];
         if (!movable(run.a) || !movable(run.b)) islands.held[island] = 1;
         islands.contacts[island] += static_cast<std::uint32_t>(run.size());
+        if (!has_conjugates(simulation, run.a, run.b)) islands.conjugates[island] = 0;
         for (const BodyId id : {run.a, run.b}) {
             const TypeProperties& type = simulation.type_of(id);
             if (!(type.inverse_mass > 0)) continue;

@@ -30,7 +30,7 @@ class IslandBuilder {
   private:
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
-    bool is_coloured(const Islands& islands, std::size_t island, bool conjugates) const;
+    bool is_coloured(const Islands& islands, std::size_t island) const;
     void sort_by_island(const Simulation& simulation, StepData& step);
 
     std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body

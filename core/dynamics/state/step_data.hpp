@@ -53,6 +53,8 @@ struct Islands {
     std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
                                            ///< kNotColoured
     std::vector<std::uint8_t> held;        ///< each island's: contacts do not move some body
+    std::vector<std::uint8_t> conjugates;  ///< each island's: its load goes along conjugate
+                                           ///< directions, see has_conjugates()
     std::vector<double> falling_mass;      ///< each island's: of what gravity pulls at [kg]
     std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
 

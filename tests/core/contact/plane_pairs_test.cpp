@@ -49,10 +49,21 @@ void expect_corners(int count) {
         const auto swapped = contacts_of(plane, body, margin);
         ASSERT_EQ(swapped.size(), list.size());
 
-        // All of them up to eight (a corner at the margin itself may be in or out by rounding).
+        // All of them up to eight, of more those that are not behind others (a corner at the margin
+        // or behind another by a hair may be in or out by rounding).
+        const auto is_behind = [&](const Corner& c, const Corner& deeper) {
+            const LVec from = c.core - deeper.core;
+            const long double along = n.dot(from), higher = c.separation - deeper.separation;
+            return (from - along * n).norm() < higher + 4 * error;
+        };
         std::size_t sure = 0;
         for (const Corner& c : expected)
-            if (c.separation < margin - error) ++sure;
+            if (c.separation < margin - error &&
+                (expected.size() <= 8 ||
+                 std::none_of(expected.begin(), expected.end(), [&](const Corner& deeper) {
+                     return &c != &deeper && is_behind(c, deeper);
+                 })))
+                ++sure;
         ASSERT_GE(list.size(), std::min<std::size_t>(8, sure)) << i;
         ASSERT_LE(list.size(), std::min<std::size_t>(8, expected.size())) << i;
         for (std::size_t k = 0; k < list.size(); ++k) {

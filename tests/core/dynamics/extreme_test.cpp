@@ -10,6 +10,7 @@
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/world.hpp"
 #include "core/shape/cubinder.hpp"
+#include "core/shape/spherinder.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -291,6 +292,34 @@ TEST(Extreme, SlenderBodiesLandAndStay) {
     expect_slender_bodies_stay(1e-4, 0.5, true);
     expect_slender_bodies_stay(1e-9, 0.5, false);
     expect_slender_bodies_stay(1e-9, 0, true);
+}
+
+/// Corners of the upper face took the places of those of the lower one: every fourth lay in the
+/// floor, whole, for ever.
+TEST(Extreme, CardsAndDiscsThatTumbleOntoAPlaneLieOnIt) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 36; ++i) {
+        const double thin = std::pow(10, uniform(random, -5, -3)), size = uniform(random, 0.2, 1.5);
+        BodyType type = box_type({size, thin, 0.8 * size, 0.6 * size});
+        Cubinder disc;
+        disc.radius = 0.5 * size, disc.size = {thin, size};
+        complete(disc);
+        Spherinder coin;
+        coin.radius = 0.5 * size, coin.height = thin;
+        complete(coin);
+        if (i % 3 == 1) type.shape = disc;
+        if (i % 3 == 2) type.shape = coin;
+        type.friction = 0.5;
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        const Vec4 a = random_vector(random, 2), b = random_vector(random, 2);
+        const BodyId body = add(bodies, type, {0, 1.2 * size + 0.1, 0, 0}, Vec4::Zero(), {},
+                                exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]}));
+        World world(bodies, impulse());
+        run(world, 960);
+        EXPECT_GT(world.bodies().position[body][1], 0.3 * thin)
+            << i << ": " << thin << " m, " << size << " m";
+    }
 }
 
 TEST(ExtremeSlow, SlenderBodiesOfAnyWidthLandAndStay) {

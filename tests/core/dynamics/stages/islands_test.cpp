@@ -110,7 +110,7 @@ TEST(Islands, AreColouredFromFewerContactsWhereABodyIsHeld) {
 
 /// A sphere on another on a fixed one, or on one that is free.
 TEST(Islands, OfUnequalMassesAreColouredWhereTheyGoAlongConjugateDirections) {
-    for (const double friction : {0.5, 2.0})
+    for (const double friction : {0.5, 3.0})
         for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
             for (const bool held : {true, false})
                 for (const double mass : {0.3, 0.5, 2.0, 3.0}) {
@@ -118,7 +118,7 @@ TEST(Islands, OfUnequalMassesAreColouredWhereTheyGoAlongConjugateDirections) {
                     BodyType first = sphere_type(1);
                     first.fixed_position = first.fixed_rotation = held;
                     add(bodies, first);
-                    add(bodies, sphere_type(1));
+                    add(bodies, sphere_type(1, 1, friction));
                     add(bodies, sphere_type(1, mass, friction));
                     std::vector<Contact> contacts(2);
                     contacts[0].b = contacts[1].a = 1, contacts[1].b = 2;
@@ -131,9 +131,30 @@ TEST(Islands, OfUnequalMassesAreColouredWhereTheyGoAlongConjugateDirections) {
                     ASSERT_EQ(step.islands.size(), 1u);
                     EXPECT_EQ(step.islands.is_coloured(0),
                               held && std::abs(std::log(mass)) > std::log(kUnequalMasses) &&
-                                  friction <= 1 && solver == Solver::kImpulse)
+                                  friction <= kMostConjugateFriction && solver == Solver::kImpulse)
                         << mass << " " << held;
                 }
+}
+
+/// What grips or resists rolling elsewhere does not matter, nor what does not touch its like.
+TEST(Islands, GoAlongConjugateDirectionsEachByItsOwnPairs) {
+    const auto rough = [](double friction, double rolling) {
+        BodyType type = sphere_type(1, 1, friction);
+        type.rolling_friction = rolling;
+        return type;
+    };
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    add(bodies, rough(0.5, 0)), add(bodies, rough(3, 0));    // sqrt(0.5 3) of friction
+    add(bodies, rough(3, 0)), add(bodies, rough(3, 0));      // 3
+    add(bodies, rough(0.5, 0)), add(bodies, rough(0.5, 1));  // rolling friction
+    std::vector<Contact> contacts(3);
+    for (BodyId i = 0; i < 3; ++i) contacts[i].a = 1 + 2 * i, contacts[i].b = 2 + 2 * i;
+    StepData step;
+    step.contacts = ContactList(contacts);
+    IslandBuilder().build(make_simulation(bodies, {}), step);
+    ASSERT_EQ(step.islands.size(), 3u);
+    EXPECT_EQ(step.islands.conjugates, (std::vector<std::uint8_t>{1, 0, 0}));
 }
 
 /// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
