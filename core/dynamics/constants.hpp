@@ -68,7 +68,7 @@ constexpr double kPartedWeight = 2;
 
 /// Sweeps of a push, at most: with 2, 4 and 8 a wall of 20 rows rests alike. More cost more while
 /// anything overlaps.
-constexpr int kPushSweeps = 4;
+constexpr int kPushSweeps = 2;
 
 /// The same of islands of few contacts: the first over these, usual 20000, and no more than the
 /// second, usual 32. Fewer, and what lies under a heavy body is pushed out of one overlap into the

@@ -77,11 +77,13 @@ inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts,
     const auto sweeps = static_cast<int>(kBlowWork / contacts);
     return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest, 4};
 }
-/// Half of the iterations where there are many contacts: the load takes what is left.
+/// A fourth of the iterations where there are many contacts: the load takes what is left (with 2 to
+/// 5 of 10 the bodies of a wall of 1000 that a ball has hit are alike as fast as 1500 make them, to
+/// 0.05 m/s rms while it breaks; Bullet's 10 are to 0.11).
 inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t contacts,
                                    double fastest) {
     const auto sweeps = static_cast<int>(kBlowWork / contacts);
-    return {std::max((simulation.settings.iterations + 1) / 2, sweeps),
+    return {std::max((simulation.settings.iterations + 2) / 4, sweeps),
             kLargeBlowResidual * fastest, 4};
 }
 
