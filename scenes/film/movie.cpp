@@ -101,17 +101,22 @@ void require_frame_of(const Scene& scene, const fs::path& folder, int frame) {
                         file.string(), kSceneFile));
 }
 
+/// The child's descriptor of what it writes.
+constexpr int kOutput = 3;
+
 /// A child process that reads what is sent to it. A socket instead of a pipe: one whose reader is
 /// gone is an error of the call and no signal.
 class Child {
   public:
-    explicit Child(std::vector<std::string> words) {
+    /// @param output   opened as kOutput
+    Child(std::vector<std::string> words, const fs::path& output) {
         int ends[2];
         if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
             throw RunError(fmt::format("no socket: {}", std::strerror(errno)));
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+        posix_spawn_file_actions_addopen(&actions, kOutput, output.c_str(), O_RDWR, 0);
         std::vector<char*> arguments;
         for (std::string& word : words) arguments.push_back(word.data());
         arguments.push_back(nullptr);
@@ -167,7 +172,7 @@ class Child {
 constexpr const char* kFilter =
     "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
-std::vector<std::string> ffmpeg_words(double frames_per_second, const fs::path& output) {
+std::vector<std::string> ffmpeg_words(double frames_per_second) {
     return {"ffmpeg",
             "-hide_banner",
             "-loglevel",
@@ -198,7 +203,7 @@ std::vector<std::string> ffmpeg_words(double frames_per_second, const fs::path& 
             "+faststart",
             "-f",
             "mp4",
-            "file:" + fs::absolute(output).string()};
+            fmt::format("file:/dev/fd/{}", kOutput)};
 }
 
 }  // namespace
@@ -248,8 +253,11 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
             fmt::format("{}: needs ffmpeg, which is not installed (Debian's package ffmpeg)",
                         report.file.string()));
 
+    // A killed run's ffmpeg may still write what it had of the film: into its own file, which it
+    // has by its descriptor, and not into this one's.
+    PartialFile(report.file).remove();
     PartialFile output(report.file);
-    Child ffmpeg(ffmpeg_words(report.frames_per_second, output.partial()));
+    Child ffmpeg(ffmpeg_words(report.frames_per_second), output.partial());
     Progress progress("filming", "frames", numbers.size(), quiet);
     std::optional<Size> size;
     bool reads = true;
