@@ -173,8 +173,7 @@ BodyInertia columns(const BivectorMap& map, double factor) {
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
     if (simulation.settings.solver != Solver::kImpulse) return false;
     const Needs& needs = simulation.needs;
-    if (needs.strong_friction && friction_of(simulation, a, b) > kMostConjugateFriction)
-        return false;
+    if (needs.very_rough && friction_of(simulation, a, b) > kMostConjugateFriction) return false;
     return !needs.rolling || rolling_arm_of(simulation, a, b) == 0;
 }
 

@@ -240,8 +240,9 @@ void apply_recalled(const Simulation& simulation, StepData& step, std::size_t is
     apply_part(simulation, step, rows, 1);
     const double after = work_of<&ContactRow::solve>(simulation, step, rows);
     const LoadWork load = {before, after - before};
-    if (load.is_too_much(energy_of_fall(simulation, step, island),
-                         is_stopped(simulation, step, island)))
+    const double weight = energy_of_fall(simulation, step, island);
+    if (0.5 * load.energy > LoadWork::least_of_stop(weight) &&
+        load.is_too_much(weight, is_stopped(simulation, step, island)))
         leave_part(simulation, step, rows, load.best_part());
 }
 

@@ -21,8 +21,7 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
     Needs needs;
     // A pair's friction is the geometric mean, its restitution the larger one.
     needs.friction = any([](const auto& type) { return type.movable && type.friction > 0; });
-    needs.strong_friction =
-        any([](const auto& type) { return type.friction > kMostConjugateFriction; });
+    needs.very_rough = any([](const auto& type) { return type.friction > kMostConjugateFriction; });
     // The larger rolling friction counts, of a pair that has friction.
     needs.rolling =
         any([](const auto& type) { return type.friction > 0 && type.rolling_friction > 0; }) &&

@@ -10,10 +10,9 @@ namespace tesserae {
 /// What the steps of a scene need, decided once for all of them. What is false is left out of every
 /// step, which then has the same result (Needs.WhatIsLeftOutWouldChangeNothing).
 struct Needs {
-    bool friction = true;  ///< tangent rows: a movable body has friction
-    bool strong_friction =
-        true;                    ///< a look for pairs whose loads go along no conjugate directions:
-                                 ///< a body has more friction than kMostConjugateFriction
+    bool friction = true;        ///< tangent rows: a movable body has friction
+    bool very_rough = true;      ///< a look for pairs whose loads have no conjugate directions: a
+                                 ///< body has more friction than kMostConjugateFriction
     bool rolling = true;         ///< rows against rolling and twisting: some body has rolling
                                  ///< friction, and friction can turn some body; needs turning
     bool restitution = true;     ///< rebounds: a body has restitution
