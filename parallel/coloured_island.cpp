@@ -37,7 +37,7 @@ class AllThreads {
         const std::uint32_t grain = grain_of(points);
         const std::uint32_t count = batches.end - batches.begin;
         const std::uint32_t chunks = (count + grain - 1) / grain;
-        if (chunks <= 1) return OneThread{}.largest(batches, points, work);
+        if (chunks <= 1 || is_alone()) return OneThread{}.largest(batches, points, work);
         return tbb::parallel_reduce(
             tbb::blocked_range<std::uint32_t>(0, chunks, 1), 0.0,
             [&](const tbb::blocked_range<std::uint32_t>& range, double largest) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,13 +10,18 @@
 
 namespace tesserae::parallel {
 
+/// Whether there is one thread, for which tasks would only cost their making.
+inline bool is_alone() { return tbb::this_task_arena::max_concurrency() == 1; }
+
 /// Calls work(Range) for pieces of at most `grain` items that cover 0 <= i < count, in parallel.
 template <class Work>
 void for_each_range(std::size_t count, std::size_t grain, const Work& work) {
     const std::size_t chunks = (count + grain - 1) / grain;
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    const auto work_on = [&](std::size_t chunk) {
         work(Range{chunk * grain, std::min(count, (chunk + 1) * grain)});
-    });
+    };
+    if (chunks > 1 && !is_alone()) return tbb::parallel_for(std::size_t{0}, chunks, work_on);
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) work_on(chunk);
 }
 
 /// The same as an argument.

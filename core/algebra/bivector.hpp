@@ -64,10 +64,10 @@ inline Bivector dual(const Bivector& b) { return {-b.zw, b.yw, -b.yz, -b.xw, b.x
 /// r contracted with omega: the velocity [m/s] of the point at offset r [m] of a body that turns
 /// with omega [rad/s]. omega.xy > 0 turns x toward y.
 inline Vec4 velocity_at(const Bivector& omega, const Vec4& r) {
-    return {-omega.xy * r[1] - omega.xz * r[2] - omega.xw * r[3],
-            omega.xy * r[0] - omega.yz * r[2] - omega.yw * r[3],
-            omega.xz * r[0] + omega.yz * r[1] - omega.zw * r[3],
-            omega.xw * r[0] + omega.yw * r[1] + omega.zw * r[2]};
+    return assembled(-omega.xy * r[1] - omega.xz * r[2] - omega.xw * r[3],
+                     omega.xy * r[0] - omega.yz * r[2] - omega.yw * r[3],
+                     omega.xz * r[0] + omega.yz * r[1] - omega.zw * r[3],
+                     omega.xw * r[0] + omega.yw * r[1] + omega.zw * r[2]);
 }
 
 /// The antisymmetric matrix of r -> velocity_at(omega, r): entry [y][x] is omega.xy.

@@ -5,13 +5,21 @@ namespace {
 
 using namespace lanes;
 
+/// Whether any point of a batch slides: where some did in the last sweep most will again, and
+/// asking each of them costs more, by mispredicted branches, than to work out how they do.
+template <class F>
+struct Sliding {
+    bool expected;
+    F excess{};  ///< of a point's squared impulse over what is allowed, the largest
+
+    bool any() const { return !simd::nowhere_above(excess, F{}); }
+};
+
 /// friction_impulse() of the one-by-one solver, in the frame; solve_part() of its rolling rows.
 template <class F, class Mass>
-[[gnu::always_inline]] inline LaneVec4<F> friction_impulse(const Lane<F>& lane,
-                                                           const std::array<Mass, 6>& masses,
-                                                           const Mass& slide_mass,
-                                                           const LaneVec4<F>& old,
-                                                           const LaneVec4<F>& slip, F most) {
+[[gnu::always_inline]] inline LaneVec4<F> friction_impulse(
+    const Lane<F>& lane, const std::array<Mass, 6>& masses, const Mass& slide_mass,
+    const LaneVec4<F>& old, const LaneVec4<F>& slip, F most, Sliding<F>& slides) {
     const LaneVec4<F> sticking = old - times(load_all(lane, masses), slip);
     // Where nothing is allowed there is nothing to find.
     const F squared = dot(sticking, sticking), allowed = most * most;
@@ -19,16 +27,18 @@ template <class F, class Mass>
     const auto only = [&](auto where, const LaneVec4<F>& v, const LaneVec4<F>& w) {
         return LaneVec4<F>{where ? v[0] : w[0], where ? v[1] : w[1], where ? v[2] : w[2], F{}};
     };
-    if (simd::nowhere_above(holds ? squared : F{}, allowed)) return only(holds, sticking, {});
+    const F to_hold = holds ? squared : F{};
+    if (!slides.expected && simd::nowhere_above(to_hold, allowed)) return only(holds, sticking, {});
+    slides.excess = larger(slides.excess, to_hold - allowed);
     const LaneVec4<F> sliding = clamped<F>(sum(old, -lane.load(slide_mass), slip), most);
-    return only(squared <= allowed, sticking, sliding);
+    return only(holds, only(squared <= allowed, sticking, sliding), {});
 }
 
 /// What is worked on while a batch's points are solved.
 template <class F>
 struct PairSweep {
     ColouredIslands& coloured;
-    const Batch& batch;
+    Batch& batch;
     Sweep sweep;
 
     /// Row of a point, in the sweep's order.
@@ -42,20 +52,19 @@ struct PairSweep {
 /// the same the other way round.
 template <class F>
 struct PairMotion {
-    FrameScrew<F> motion, impulse{}, seen{};
+    FrameScrew<F> motion, impulse{};
 
-    [[gnu::always_inline]] void see_along(const Lane<F>& lane, const PairFriction& friction) {
+    /// @param change   of the impulses, since it was last seen
+    [[gnu::always_inline]] void see_along(const Lane<F>& lane, const PairFriction& friction,
+                                          const std::array<F, 4>& change) {
         for (std::size_t i = 0; i < 4; ++i)
-            add_scaled(lane, friction.coupled[i], impulse.along[i] - seen.along[i], motion.across);
-        seen.along = impulse.along;
+            add_scaled(lane, friction.coupled[i], change[i], motion.across);
     }
     [[gnu::always_inline]] void see_across(const Lane<F>& lane, const PairFriction& friction) {
-        for (std::size_t j = 0; j < 6; ++j) {
-            const F change = impulse.across[j] - seen.across[j];
+        for (std::size_t j = 0; j < 6; ++j)
             for (std::size_t i = 0; i < 4; ++i)
-                motion.along[i] = fused(lane.load(friction.coupled[i][j]), change, motion.along[i]);
-        }
-        seen.across = impulse.across;
+                motion.along[i] =
+                    fused(lane.load(friction.coupled[i][j]), impulse.across[j], motion.along[i]);
     }
 };
 
@@ -116,10 +125,11 @@ struct FrictionPoint {
     /// @param share   of the slip that it ends
     /// @return the change of its impulse
     [[gnu::always_inline]] LaneVec4<F> solve(const Lane<F>& lane, const std::array<F, 6>& motion,
-                                             F share) const {
+                                             F share, Sliding<F>& slides) const {
         const LaneVec4<F> old = load(lane, impulse);
         const LaneVec4<F> slip = share * across_at(at, motion);
-        const LaneVec4<F> all = friction_impulse(lane, row.mass, row.slide_mass, old, slip, most);
+        const LaneVec4<F> all =
+            friction_impulse(lane, row.mass, row.slide_mass, old, slip, most, slides);
         store(lane, all, impulse);
         return all - old;
     }
@@ -143,6 +153,7 @@ template <class F>
     const std::array<F, 21> response = load_all(lane, friction.response);
     const std::uint32_t rows = pair.batch.rows, twos = rows / 2, steps = rows - twos;
     F squared_left{};
+    Sliding<F> slides{pair.batch.slides};
     for (std::uint32_t i = 0; i < steps; ++i) {
         const std::uint32_t k = pair.sweep.backward ? steps - 1 - i : i;
         const FrictionPoint<F> first(lane, pair, mu, pair.batch.row + k);
@@ -151,15 +162,15 @@ template <class F>
             const FrictionPoint<F> last(lane, pair, mu, pair.batch.row + rows - 1 - k);
             const F least = first.most < last.most ? first.most : last.most;
             const F share = least > F{} ? F{} + 0.5f : one;
-            const LaneVec4<F> change = first.solve(lane, of.motion.across, share);
-            const LaneVec4<F> other = last.solve(lane, of.motion.across, share);
+            const LaneVec4<F> change = first.solve(lane, of.motion.across, share, slides);
+            const LaneVec4<F> other = last.solve(lane, of.motion.across, share, slides);
             seen = seen_from_centre(first.at, change);
             add(seen_from_centre(last.at, other), seen);
             if (pair.sweep.measured)
                 squared_left = larger(squared_left, larger(first.squared_left(lane, change, share),
                                                            last.squared_left(lane, other, share)));
         } else {
-            const LaneVec4<F> change = first.solve(lane, of.motion.across, one);
+            const LaneVec4<F> change = first.solve(lane, of.motion.across, one, slides);
             seen = seen_from_centre(first.at, change);
             if (pair.sweep.measured)
                 squared_left = larger(squared_left, first.squared_left(lane, change, one));
@@ -168,6 +179,7 @@ template <class F>
         add_product(response, seen, of.motion.across);
     }
     if (pair.sweep.measured) left = larger(left, square_root(squared_left));
+    pair.batch.slides = slides.any();
 }
 
 /// Rolling or twisting of all points.
@@ -182,14 +194,16 @@ template <class F, class Response, std::size_t kSize, std::size_t kEntries>
                                                  std::size_t part, std::array<F, kSize>& motion,
                                                  std::array<F, kSize>& impulse) {
     const std::array<F, kEntries> responses = load_all(lane, response);
+    Sliding<F> slides{false};
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
         GeneralRolling& row = pair.coloured.general_rolling[k];
         LaneVec4<F> old{};
         for (std::size_t j = 0; j < 3; ++j) old[j] = lane.load(row.impulse[part + j]);
         const LaneVec4<F> slip = {motion[first], motion[first + 1], motion[first + 2], F{}};
-        const LaneVec4<F> all = friction_impulse(lane, mass, step_mass, old, slip,
-                                                 arm * lane.load(pair.coloured.impulses.normal[k]));
+        const LaneVec4<F> all =
+            friction_impulse(lane, mass, step_mass, old, slip,
+                             arm * lane.load(pair.coloured.impulses.normal[k]), slides);
         std::array<F, kSize> change{};
         for (std::size_t j = 0; j < 3; ++j) {
             lane.store(all[j], row.impulse[part + j]);
@@ -220,14 +234,15 @@ template <bool kFriction, bool kRolling, class F>
     solve_normals(lane, pair, of, left);
     if constexpr (kFriction) {
         const PairFriction& friction = pair.coloured.pair_friction[index];
-        of.see_along(lane, friction);
+        of.see_along(lane, friction, of.impulse.along);
         solve_friction(lane, pair, friction, of, left);
         if constexpr (kRolling) {
             const PairRolling& rolling = pair.coloured.pair_rolling[index];
             add_product(load_all(lane, rolling.response), of.impulse.along, of.motion.along);
             of.see_across(lane, friction);
+            const std::array<F, 4> seen = of.impulse.along;
             solve_rolling(lane, pair, rolling, of);
-            of.see_along(lane, friction);
+            of.see_along(lane, friction, difference(of.impulse.along, seen));
             solve_twisting(lane, pair, rolling, friction, of);
         }
     }
@@ -250,7 +265,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
 [[gnu::always_inline]] inline F solve_points(const ColouredStage& stage, const Lane<F>& lane,
                                              std::uint32_t index, Sweep sweep) {
     ColouredIslands& coloured = stage.step.coloured;
-    const Batch& batch = coloured.general[index];
+    Batch& batch = coloured.general[index];
     const PairFrame& pair_frame = coloured.frames[index];
     LanePair<F, kUneven> bodies(lane, coloured, index);
     const Frame<F> frame(load(lane, pair_frame.h));

@@ -114,7 +114,8 @@ struct Frame {
         return {{g * v[3], g * w[2], g * w[4], g * w[5]}, {v[0], v[1], v[2], w[0], w[1], w[3]}};
     }
     [[gnu::always_inline]] Screw<F> to_world(const FrameScrew<F>& s) const {
-        const auto &n = s.along, &t = s.across;
+        const std::array<F, 4>& n = s.along;
+        const std::array<F, 6>& t = s.across;
         return {reflected(LaneVec4<F>{t[0], t[1], t[2], g * n[0]}),
                 reflected(LaneBivector<F>{t[3], t[4], g * n[1], t[5], g * n[2], g * n[3]})};
     }

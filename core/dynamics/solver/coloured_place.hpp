@@ -46,19 +46,21 @@ template <class F, std::size_t kSize>
 [[gnu::always_inline]] inline void add(const std::array<F, kSize>& x, std::array<F, kSize>& to) {
     for (std::size_t i = 0; i < kSize; ++i) to[i] += x[i];
 }
-template <class F, class Entry, std::size_t kSize>
-[[gnu::always_inline]] inline std::array<F, kSize> load_all(const Lane<F>& lane,
-                                                            const std::array<Entry, kSize>& from) {
-    std::array<F, kSize> x;
-    for (std::size_t i = 0; i < kSize; ++i) x[i] = lane.load(from[i]);
-    return x;
+template <class F, class Entry, std::size_t... i>
+[[gnu::always_inline]] inline std::array<F, sizeof...(i)> first_of(const Lane<F>& lane,
+                                                                   const Entry* from,
+                                                                   std::index_sequence<i...>) {
+    return {lane.load(from[i])...};
 }
 template <std::size_t kCount, class F, class Entry>
 [[gnu::always_inline]] inline std::array<F, kCount> first_of(const Lane<F>& lane,
                                                              const Entry* from) {
-    std::array<F, kCount> x;
-    for (std::size_t i = 0; i < kCount; ++i) x[i] = lane.load(from[i]);
-    return x;
+    return first_of(lane, from, std::make_index_sequence<kCount>());
+}
+template <class F, class Entry, std::size_t kSize>
+[[gnu::always_inline]] inline std::array<F, kSize> load_all(const Lane<F>& lane,
+                                                            const std::array<Entry, kSize>& from) {
+    return first_of<kSize>(lane, from.data());
 }
 template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline void store_all(const Lane<F>& lane, const std::array<F, kSize>& x,
@@ -70,6 +72,14 @@ template <class F, std::size_t kSize>
 [[gnu::always_inline]] inline void add_to(const Lane<F>& lane, const std::array<F, kSize>& x,
                                           std::array<Eight, kSize>& to) {
     for (std::size_t i = 0; i < kSize; ++i) lane.store(lane.load(to[i]) + x[i], to[i]);
+}
+
+template <class F, std::size_t kSize>
+[[gnu::always_inline]] inline std::array<F, kSize> difference(const std::array<F, kSize>& x,
+                                                              const std::array<F, kSize>& y) {
+    std::array<F, kSize> of;
+    for (std::size_t i = 0; i < kSize; ++i) of[i] = x[i] - y[i];
+    return of;
 }
 
 /// to += k x

@@ -42,8 +42,9 @@ inline void put(const Vec4& v, std::array<float, 4>& to) {
 }
 
 inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
-    const std::array<double, 6> planes = {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw};
-    for (std::size_t i = 0; i < 6; ++i) to[i].lane[lane] = static_cast<float>(planes[i]);
+    to[0].lane[lane] = static_cast<float>(b.xy), to[1].lane[lane] = static_cast<float>(b.xz);
+    to[2].lane[lane] = static_cast<float>(b.xw), to[3].lane[lane] = static_cast<float>(b.yz);
+    to[4].lane[lane] = static_cast<float>(b.yw), to[5].lane[lane] = static_cast<float>(b.zw);
 }
 
 /// Of a body that contacts do not move the offset is left out: it may be too large for a float.

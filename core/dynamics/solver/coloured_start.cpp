@@ -156,7 +156,8 @@ template <class F>
                                                        F most, GeneralRolling& row,
                                                        FrameScrew<F>& impulse) {
     const FrameScrew<F> last = frame.from_world({{}, load(lane, row.impulse)});
-    const auto &n = last.along, &t = last.across;
+    const std::array<F, 4>& n = last.along;
+    const std::array<F, 6>& t = last.across;
     const LaneVec4<F> rolling = clamped<F>(LaneVec4<F>{n[1], n[2], n[3], F{}}, most);
     const LaneVec4<F> twisting = clamped<F>(LaneVec4<F>{t[3], t[4], t[5], F{}}, most);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -143,13 +143,11 @@ template <class Record>
     to[1] = __builtin_shufflevector(sum, sum, 0, 1, 2, 3);
     to[2] = __builtin_shufflevector(sum, sum, 4, 5, 6, 7);
 }
-BodyInertia columns(const BivectorMap& map, double factor) {
-    BodyInertia inertia;
+void put_columns(const BivectorMap& map, double factor, BodyInertia& to) {
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j)
-            inertia.column[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+            to.column[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
                 static_cast<float>(map(j, i) * factor);
-    return inertia;
 }
 
 /// The momentum of a change of the motion of a body in `bodies`.
@@ -184,12 +182,13 @@ BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = coloured.bodies[i];
         const TypeProperties& type = stage.simulation.type_of(id);
-        if (coloured.turns_unevenly)
-            coloured.inertias[i] =
-                type.isotropic
-                    ? BodyInertia{}
-                    : columns(without_specks(world_map(type.inertia, type, stage.step.rotor[id])),
-                              1 / stage.mass_unit);
+        if (coloured.turns_unevenly) {
+            if (type.isotropic)
+                coloured.inertias[i] = {};
+            else
+                put_columns(without_specks(world_map(type.inertia, type, stage.step.rotor[id])),
+                            1 / stage.mass_unit, coloured.inertias[i]);
+        }
         sums[0] += energy_of(coloured, i, load(coloured.changes[i]));
         if (type.falls) sums[1] += 0.5 * type.mass / stage.mass_unit * kick_squared;
     }

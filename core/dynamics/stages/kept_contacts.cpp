@@ -51,14 +51,25 @@ class Search {
     const std::shared_ptr<const KeptManifold>* find(const BodyPair& pair) {
         for (; list_ < lists_.size(); ++list_, place_ = 0) {
             const KeptManifolds& all = lists_[list_];
-            for (; place_ < all.size(); ++place_)
-                if (!(pair_of(*all[place_]) < pair))
-                    return pair_of(*all[place_]) == pair ? &all[place_] : nullptr;
+            for (; place_ < all.size(); ++place_) {
+                if (pair_of(*all[place_]) < pair) continue;
+                ask_for_next(all);
+                return pair_of(*all[place_]) == pair ? &all[place_] : nullptr;
+            }
         }
         return nullptr;
     }
 
   private:
+    /// Manifolds are anywhere in memory: what is read soon is on its way until then.
+    void ask_for_next(const KeptManifolds& all) const {
+        constexpr std::size_t kAhead = 2, kLine = 64;
+        if (place_ + kAhead >= all.size()) return;
+        const auto* const next = reinterpret_cast<const char*>(all[place_ + kAhead].get());
+        for (std::size_t at = 0; at < sizeof(KeptManifold); at += kLine)
+            __builtin_prefetch(next + at);
+    }
+
     const std::vector<KeptManifolds>& lists_;
     std::size_t list_, place_ = 0;
 };

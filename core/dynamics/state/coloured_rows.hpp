@@ -62,6 +62,7 @@ struct Batch {
     std::uint32_t row = 0;                             ///< first of its rows
     std::uint32_t rows = 0;                            ///< the most points of a lane
     std::uint32_t response = 0;  ///< first of its point responses, see responses_of()
+    bool slides = false;         ///< any of its points did in the last sweep
 };
 
 /// Points that a batch with so many rows is worked on as if it had.

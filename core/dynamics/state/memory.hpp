@@ -24,14 +24,14 @@ struct KeptPoint {
 struct KeptManifold {
     enum class Keeps : std::uint8_t { kUnknown, kNormalOfA, kNormalOfB, kNoFace };
 
-    BodyId a = 0, b = 0;                     ///< a < b
+    BodyId a = 0, b = 0;  ///< a < b
+    Keeps keeps = Keeps::kUnknown;
+    std::uint8_t no_seam = 0;                ///< with all points: see Contact
+    std::uint8_t count = 0;                  ///< of the points
     PackedVec4 offset = PackedVec4::Zero();  ///< [m]
     Rotor rotor;                             ///< b's frame to a's
     PackedVec4 normal = PackedVec4::Zero();  ///< from a to b where it was found, in a's frame
-    std::array<KeptPoint, kManifoldPoints> points = {};  ///< so many are there:
-    std::uint8_t count = 0;
-    std::uint8_t no_seam = 0;  ///< with all points: see Contact
-    Keeps keeps = Keeps::kUnknown;
+    std::array<KeptPoint, kManifoldPoints> points = {};
 
     std::span<const KeptPoint> found() const { return {points.data(), count}; }
 };
