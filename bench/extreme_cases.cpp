@@ -185,37 +185,86 @@ std::vector<ExtremeCase> blows() {
     return cases;
 }
 
-/// A body of 0.3 m put down on tiles of 0.5 m, on its way at 3 m/s across them, and the same on one
-/// plane.
-ExtremeCase seams(std::string name, BodyType body, double friction) {
+/// The last body's path for a second over boxes, and that over planes in their place.
+ExtremeCase beside_planes(std::string name, Bodies boxes, Bodies planes) {
     return {std::move(name), [=](const PhysicsSettings& settings) -> Measurements {
-                const auto start = [&](bool tiled) {
-                    Bodies bodies;
-                    if (!tiled) add(bodies, plane_type(Vec4::UnitY(), 0, friction), Vec4::Zero());
-                    BodyType tile = box_type(Vec4::Constant(0.5), 1);
-                    tile.fixed_position = tile.fixed_rotation = true;
-                    tile.friction = friction;
-                    bodies.types.push_back(tile);
-                    const auto type = static_cast<std::uint32_t>(bodies.types.size() - 1);
-                    for (int i = 0; tiled && i < 10 * 6 * 4; ++i)
-                        add(bodies, type,
-                            {0.5 * (i % 10) - 0.3, -0.25, 0.5 * (i / 10 % 6) - 0.3,
-                             0.5 * (i / 60) - 0.8});
-                    BodyType rough = body;
-                    rough.friction = friction;
-                    add(bodies, rough, {0, 0.15, 0, 0}, {2.6, 0, 1.4, 0.3});
-                    return bodies;
-                };
-                World tiles(start(true), settings), plane(start(false), settings);
+                World on_boxes(boxes, settings), on_planes(planes, settings);
                 double path = 0, hop = 0;
                 for (int i = 0; i < 240; ++i) {
-                    tiles.step(1.0 / 240), plane.step(1.0 / 240);
-                    Vec4 apart = tiles.bodies().position.back() - plane.bodies().position.back();
+                    on_boxes.step(1.0 / 240), on_planes.step(1.0 / 240);
+                    Vec4 apart =
+                        on_boxes.bodies().position.back() - on_planes.bodies().position.back();
                     hop = std::max(hop, std::abs(apart[1]));
                     apart[1] = 0;
                     path = std::max(path, apart.norm());
                 }
                 return {{"path differs by", "mm", 1e3 * path}, {"hops by", "mm", 1e3 * hop}};
+            }};
+}
+
+/// A body of 0.3 m put down on tiles of 0.5 m, on its way at 3 m/s across them.
+ExtremeCase seams(std::string name, BodyType body, double friction) {
+    Bodies tiles, plane;
+    add(plane, plane_type(Vec4::UnitY(), 0, friction), Vec4::Zero());
+    BodyType tile = box_type(Vec4::Constant(0.5), 1);
+    tile.fixed_position = tile.fixed_rotation = true;
+    tile.friction = body.friction = friction;
+    tiles.types.push_back(tile);
+    for (int i = 0; i < 10 * 6 * 4; ++i)
+        add(tiles, 0,
+            {0.5 * (i % 10) - 0.3, -0.25, 0.5 * (i / 10 % 6) - 0.3, 0.5 * (i / 60) - 0.8});
+    for (Bodies* bodies : {&tiles, &plane}) add(*bodies, body, {0, 0.15, 0, 0}, {2.6, 0, 1.4, 0.3});
+    return beside_planes(std::move(name), tiles, plane);
+}
+
+/// A box of 0.3 m that slides down a ramp of 15 degrees, half a metre to the floor at its foot.
+ExtremeCase ramp() {
+    const double angle = 15 * pi / 180;
+    const Vec4 out = {std::sin(angle), std::cos(angle), 0, 0};
+    const Vec4 down = {std::cos(angle), -std::sin(angle), 0, 0};
+    const Rotor leaning = exp(Bivector{0.5 * angle});
+    Bodies boxes, planes;
+    for (const Vec4& normal : {Vec4(Vec4::UnitY()), out})
+        add(planes, plane_type(normal, 0, 0), Vec4::Zero());
+    BodyType ground = box_type(Vec4::Constant(10), 1);
+    ground.fixed_position = ground.fixed_rotation = true, ground.friction = 0;
+    add(boxes, ground, {5, -5, 0, 0});
+    add(boxes, ground, -5 * (down + out));
+    boxes.rotor.back() = leaning;
+    BodyType box = box_type(Vec4::Constant(0.3), 1);
+    box.friction = 0;
+    for (Bodies* bodies : {&boxes, &planes}) {
+        add(*bodies, box, 0.15 * out - 0.65 * down);
+        bodies->rotor.back() = leaning;
+    }
+    return beside_planes("box slides from a ramp onto a floor", boxes, planes);
+}
+
+/// Rods of 1 m by 2 mm that fall across each other, at 60 steps a second.
+ExtremeCase rods() {
+    return {"eight rods of 1 m by 2 mm poured", [](const PhysicsSettings& settings) {
+                std::mt19937_64 engine(1);
+                Bodies bodies = floor_and();
+                for (int i = 0; i < 8; ++i) {
+                    Vec4 size = Vec4::Constant(0.002);
+                    size[i % 4] = 1;
+                    const Vec4 a = random_vector(engine, 2), b = random_vector(engine, 2);
+                    add(bodies, box_type(size, 1), {0.05 * (i % 3), 0.8 + 0.7 * i, 0, 0});
+                    bodies.rotor.back() = exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]});
+                }
+                World world(bodies, settings);
+                const auto energy = [&] {
+                    return kinetic_energy(world.bodies()) +
+                           potential_energy(world.bodies(), settings.gravity);
+                };
+                const double start = energy();
+                double least = start, gain = 0;
+                for (int k = 0; k < 180; ++k) {
+                    world.step(1.0 / 60);
+                    least = std::min(least, energy());
+                    gain = std::max(gain, energy() - least);
+                }
+                return Measurements{{"largest gain of energy", "relative", gain / start}};
             }};
 }
 
@@ -352,6 +401,8 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(
         seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0.3));
     cases.push_back(seams("ball slides over seams", sphere_type(0.15, 1), 0));
+    cases.push_back(ramp());
+    cases.push_back(rods());
     for (ExtremeCase& thrown : all_throws()) cases.push_back(std::move(thrown));
     cases.push_back(bouncing());
     if (with_long) cases.push_back(resting_spheres());

@@ -55,16 +55,21 @@ struct PairMotion {
     FrameScrew<F> motion, impulse{};
 
     /// @param change   of the impulses, since it was last seen
-    [[gnu::always_inline]] void see_along(const Lane<F>& lane, const PairFriction& friction,
-                                          const std::array<F, 4>& change) {
-        for (std::size_t i = 0; i < 4; ++i)
-            add_scaled(lane, friction.coupled[i], change[i], motion.across);
-    }
-    [[gnu::always_inline]] void see_across(const Lane<F>& lane, const PairFriction& friction) {
-        for (std::size_t j = 0; j < 6; ++j)
+    [[gnu::always_inline]] void see_along(const Lane<F>& lane, ColouredIslands& coloured,
+                                          std::uint32_t index, const std::array<F, 4>& change) {
+        with_response(coloured, index, [&](const auto& response) {
             for (std::size_t i = 0; i < 4; ++i)
-                motion.along[i] =
-                    fused(lane.load(friction.coupled[i][j]), impulse.across[j], motion.along[i]);
+                add_scaled(lane, response.along[i], change[i], motion.across);
+        });
+    }
+    [[gnu::always_inline]] void see_across(const Lane<F>& lane, ColouredIslands& coloured,
+                                           std::uint32_t index) {
+        with_response(coloured, index, [&](const auto& response) {
+            for (std::size_t j = 0; j < 6; ++j)
+                for (std::size_t i = 0; i < 4; ++i)
+                    motion.along[i] =
+                        fused(lane.load(response.along[i][j]), impulse.across[j], motion.along[i]);
+        });
     }
 };
 
@@ -147,10 +152,9 @@ struct FrictionPoint {
 /// often.
 template <class F>
 [[gnu::always_inline]] inline void solve_friction(const Lane<F>& lane, const PairSweep<F>& pair,
-                                                  const PairFriction& friction, PairMotion<F>& of,
-                                                  F& left) {
-    const F mu = lane.load(friction.friction), one = F{} + 1.0f;
-    const std::array<F, 21> response = load_all(lane, friction.response);
+                                                  std::uint32_t index, PairMotion<F>& of, F& left) {
+    const F mu = lane.load(pair.coloured.pair_friction[index].friction), one = F{} + 1.0f;
+    const std::array<F, 21> response = across_response(lane, pair.coloured, index);
     const std::uint32_t rows = pair.batch.rows, twos = rows / 2, steps = rows - twos;
     F squared_left{};
     Sliding<F> slides{pair.batch.slides};
@@ -185,15 +189,14 @@ template <class F>
 /// Rolling or twisting of all points.
 /// @param motion, impulse, response   along or across the normal, where three from `first` on turn
 /// @param part                        where a row's impulses begin
-template <class F, class Response, std::size_t kSize, std::size_t kEntries>
+template <class F, std::size_t kSize, std::size_t kEntries>
 [[gnu::always_inline]] inline void solve_turning(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  std::size_t first, F arm,
                                                  const std::array<Eight, 6>& mass,
                                                  const Eight& step_mass,
-                                                 const std::array<Response, kEntries>& response,
+                                                 const std::array<F, kEntries>& response,
                                                  std::size_t part, std::array<F, kSize>& motion,
                                                  std::array<F, kSize>& impulse) {
-    const std::array<F, kEntries> responses = load_all(lane, response);
     Sliding<F> slides{false};
     for (std::uint32_t i = 0; i < pair.batch.rows; ++i) {
         const std::uint32_t k = pair.row(i);
@@ -210,21 +213,22 @@ template <class F, class Response, std::size_t kSize, std::size_t kEntries>
             change[first + j] = all[j] - old[j];
         }
         add(change, impulse);
-        add_product(responses, change, motion);
+        add_product(response, change, motion);
     }
 }
 template <class F>
 [[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  const PairRolling& rolling, PairMotion<F>& of) {
     solve_turning(lane, pair, 1, lane.load(rolling.arm), rolling.rolling_mass, rolling.rolling_step,
-                  rolling.response, 0, of.motion.along, of.impulse.along);
+                  load_all(lane, rolling.response), 0, of.motion.along, of.impulse.along);
 }
 template <class F>
 [[gnu::always_inline]] inline void solve_twisting(const Lane<F>& lane, const PairSweep<F>& pair,
-                                                  const PairRolling& rolling,
-                                                  const PairFriction& friction, PairMotion<F>& of) {
+                                                  const PairRolling& rolling, std::uint32_t index,
+                                                  PairMotion<F>& of) {
     solve_turning(lane, pair, 3, lane.load(rolling.arm), rolling.twisting_mass,
-                  rolling.twisting_step, friction.response, 3, of.motion.across, of.impulse.across);
+                  rolling.twisting_step, across_response(lane, pair.coloured, index), 3,
+                  of.motion.across, of.impulse.across);
 }
 
 /// Normal impulses, friction, rolling, twisting, each after what those before it have done.
@@ -233,17 +237,16 @@ template <bool kFriction, bool kRolling, class F>
                                                std::uint32_t index, PairMotion<F>& of, F& left) {
     solve_normals(lane, pair, of, left);
     if constexpr (kFriction) {
-        const PairFriction& friction = pair.coloured.pair_friction[index];
-        of.see_along(lane, friction, of.impulse.along);
-        solve_friction(lane, pair, friction, of, left);
+        of.see_along(lane, pair.coloured, index, of.impulse.along);
+        solve_friction(lane, pair, index, of, left);
         if constexpr (kRolling) {
             const PairRolling& rolling = pair.coloured.pair_rolling[index];
             add_product(load_all(lane, rolling.response), of.impulse.along, of.motion.along);
-            of.see_across(lane, friction);
+            of.see_across(lane, pair.coloured, index);
             const std::array<F, 4> seen = of.impulse.along;
             solve_rolling(lane, pair, rolling, of);
-            of.see_along(lane, friction, difference(of.impulse.along, seen));
-            solve_twisting(lane, pair, rolling, friction, of);
+            of.see_along(lane, pair.coloured, index, difference(of.impulse.along, seen));
+            solve_twisting(lane, pair, rolling, index, of);
         }
     }
 }
@@ -254,9 +257,8 @@ template <bool kFriction, class F>
                                                        std::uint32_t index, PairMotion<F>& of,
                                                        F& left) {
     if constexpr (kFriction) {
-        const PairFriction& friction = pair.coloured.pair_friction[index];
-        solve_friction(lane, pair, friction, of, left);
-        of.see_across(lane, friction);
+        solve_friction(lane, pair, index, of, left);
+        of.see_across(lane, pair.coloured, index);
     }
     solve_normals(lane, pair, of, left);
 }

@@ -213,30 +213,44 @@ template <class F>
             fused(s[2], v[0], fused(s[4], v[1], s[5] * v[2])), F{}};
 }
 
-/// Below this part of the cube of the mean response a tangent block is not inverted in float: some
-/// direction hardly yields, as that towards a centre whose place is fixed.
-constexpr float kLeastDeterminant = 1e-4f;
+/// Where a tangent block yields this many times as much in some direction as in another, all
+/// directions are taken to yield more, by one in so many of the most: it is inverted in float and
+/// the inverse is rounded to one part in 500, neither of which may make it much larger than it is.
+/// So it is of a thin body that is touched far beside it, and where some direction does not yield
+/// at all, as that towards a centre whose place is fixed.
+constexpr float kMostCondition = 100;
 
-/// The inverses of the tangent block K (xx xy xz yy yz zz) and of its norm.
+/// Of a symmetric block xx xy xz yy yz zz: its inverse times its determinant, and its norm.
 template <class F>
-[[gnu::always_inline]] inline void invert(const std::array<F, 6>& K, F rounding,
-                                          std::array<F, 6>& inverse, F& slide) {
-    const F one = F{} + 1.0f;
-    const F xx = K[3] * K[5] - K[4] * K[4], xy = K[2] * K[4] - K[1] * K[5];
-    const F xz = K[1] * K[4] - K[2] * K[3], yy = K[0] * K[5] - K[2] * K[2];
-    const F yz = K[1] * K[2] - K[0] * K[4], zz = K[0] * K[3] - K[1] * K[1];
-    const F determinant = K[0] * xx + K[1] * xy + K[2] * xz;
-    const F mean = (K[0] + K[3] + K[5]) / (F{} + 3.0f);
-    const F norm = square_root((K[0] * K[0] + K[3] * K[3] + K[5] * K[5]) +
-                               (F{} + 2.0f) * (K[1] * K[1] + K[2] * K[2] + K[4] * K[4]));
-    const auto yields = mean > rounding;
-    const auto inverts = determinant > kLeastDeterminant * (mean * mean * mean);
+[[gnu::always_inline]] inline std::array<F, 6> adjugate(const std::array<F, 6>& K) {
+    return {K[3] * K[5] - K[4] * K[4], K[2] * K[4] - K[1] * K[5], K[1] * K[4] - K[2] * K[3],
+            K[0] * K[5] - K[2] * K[2], K[1] * K[2] - K[0] * K[4], K[0] * K[3] - K[1] * K[1]};
+}
+template <class F>
+[[gnu::always_inline]] inline F norm_of(const std::array<F, 6>& K) {
+    return square_root((K[0] * K[0] + K[3] * K[3] + K[5] * K[5]) +
+                       (F{} + 2.0f) * (K[1] * K[1] + K[2] * K[2] + K[4] * K[4]));
+}
+
+/// The inverses of the tangent block K and of its norm.
+template <class F>
+[[gnu::always_inline]] inline void invert(std::array<F, 6> K, F rounding, std::array<F, 6>& inverse,
+                                          F& slide) {
+    const F one = F{} + 1.0f, norm = norm_of(K);
+    const auto yields = (K[0] + K[3] + K[5]) / (F{} + 3.0f) > rounding;
+    inverse = adjugate(K);
+    const auto determinant = [&] {
+        return K[0] * inverse[0] + K[1] * inverse[1] + K[2] * inverse[2];
+    };
+    const F least = norm * norm_of(inverse) / (F{} + kMostCondition);
+    if (!simd::nowhere_above(least, determinant())) {
+        const F more = least <= determinant() ? F{} : norm / (F{} + kMostCondition);
+        for (const std::size_t diagonal : {0, 3, 5}) K[diagonal] += more;
+        inverse = adjugate(K);
+    }
     slide = yields ? one / norm : F{};
-    const F scale = one / determinant;
-    inverse = {inverts ? scale * xx : slide, inverts ? scale * xy : F{},
-               inverts ? scale * xz : F{},   inverts ? scale * yy : slide,
-               inverts ? scale * yz : F{},   inverts ? scale * zz : slide};
-    for (F& entry : inverse) entry = yields ? entry : F{};
+    const F scale = one / determinant();
+    for (F& entry : inverse) entry = yields ? scale * entry : F{};
 }
 
 }  // namespace tesserae::lanes

@@ -82,6 +82,25 @@ template <class F, std::size_t kSize>
     return of;
 }
 
+/// Calls use(AcrossResponse<...>&) with that of a batch.
+template <class Use>
+[[gnu::always_inline]] inline void with_response(ColouredIslands& coloured, std::uint32_t index,
+                                                 const Use& use) {
+    if (coloured.slender)
+        use(coloured.slender_response[index]);
+    else
+        use(coloured.pair_friction[index].response);
+}
+template <class F>
+[[gnu::always_inline]] inline std::array<F, 21> across_response(const Lane<F>& lane,
+                                                                ColouredIslands& coloured,
+                                                                std::uint32_t index) {
+    std::array<F, 21> x;
+    with_response(coloured, index,
+                  [&](const auto& response) { x = load_all(lane, response.across); });
+    return x;
+}
+
 /// to += k x
 template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,

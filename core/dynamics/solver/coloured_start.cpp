@@ -98,7 +98,7 @@ constexpr std::array<std::size_t, 3> kAlong = {2, 4, 5}, kAcross = {0, 1, 3};
 template <bool kFriction, class F, bool kUneven>
 [[gnu::always_inline]] inline void make_frame(const Lane<F>& lane, const LanePair<F, kUneven>& pair,
                                               const Frame<F>& frame, Responses<F>& to,
-                                              PairFriction* friction) {
+                                              ColouredIslands& coloured, std::uint32_t index) {
     CentreResponse<F> world;
     add_turning(pair.inverse_a(), pair.centre_a(), world);
     add_turning(pair.inverse_b(), pair.centre_b(), world);
@@ -126,8 +126,10 @@ template <bool kFriction, class F, bool kUneven>
                 to.across[in_triangle<6>(3 + i, 3 + j)] = of.turning[kAcross[i]][kAcross[j]];
             }
         }
-        for (std::size_t i = 0; i < 4; ++i) store_all(lane, coupled[i], friction->coupled[i]);
-        store_all(lane, to.across, friction->response);
+        with_response(coloured, index, [&](auto& response) {
+            for (std::size_t i = 0; i < 4; ++i) store_all(lane, coupled[i], response.along[i]);
+            store_all(lane, to.across, response.across);
+        });
     }
 }
 
@@ -234,9 +236,8 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         gather_inertias(lane, coloured.inverse_inertias, batch.b, inertia.b);
     }
     const LanePair<F, kUneven> pair(lane, coloured, index);
-    PairFriction* friction = kFriction ? &coloured.pair_friction[index] : nullptr;
     Responses<F> response;
-    make_frame<kFriction>(lane, pair, frame, response, friction);
+    make_frame<kFriction>(lane, pair, frame, response, coloured, index);
     if constexpr (kRolling) {
         PairRolling& rolling = coloured.pair_rolling[index];
         store_all(lane, response.along, rolling.response);

@@ -52,6 +52,7 @@ bool fit_floats(std::span<const TypeProperties> types) {
     for (const TypeProperties& type : types) {
         if (!type.movable) continue;
         if (!(type.radius > 1e-9 && type.radius < 1e9)) return false;
+        if (slenderness(type) > 1e5) return false;
         const int exponent = std::ilogb(type.mass);
         least = std::min(least, exponent), most = std::max(most, exponent);
     }
@@ -63,6 +64,7 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.friction = simulation.needs.friction;
     coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
+    coloured.slender = simulation.needs.slender;
     coloured.first_body.assign(1, 1);
     coloured.first_colour.assign(1, 0);
     coloured.mass_unit.clear();
@@ -136,6 +138,7 @@ void Colouring::end(const Simulation& simulation, StepData& step) {
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());
     resize_anew(coloured.pair_friction, coloured.general.size());
+    if (coloured.slender) resize_anew(coloured.slender_response, coloured.general.size());
     resize_anew(coloured.general_friction, coloured.general_rows);
     if (!coloured.rolling) return;
     resize_anew(coloured.round_rolling, coloured.round.size());

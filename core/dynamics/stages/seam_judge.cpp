@@ -124,28 +124,52 @@ bool are_flush(const Face& face, const Face& other, const Simulation& simulation
     return std::abs(rise) <= part_of(simulation.type_of(body), kFlush);
 }
 
+/// Of the other body's surface where a contact is.
+double height_over(const Face& face, const Contact& contact, BodyId body) {
+    return face.normal.dot(point_below(contact, body)) - face.offset;
+}
+
+/// The face of a body that does not move that rises from the ground's plane where they meet, as a
+/// floor does from a ramp: if all points of the meeting are near it, and no deeper in that body.
+std::optional<Face> rising_face(const Face& ground, const Simulation& simulation,
+                                const StepData& step, const Meeting& m) {
+    if (simulation.type_of(m.other).movable) return std::nullopt;
+    const TypeProperties& type = simulation.type_of(m.body);
+    const Placed other(simulation, step, m.other);
+    if (other.depth_under(ground) >= -part_of(type, kFlush)) return std::nullopt;
+    const std::optional<Face> face = other.face_towards(ground.normal);
+    if (!face || !(face->normal.dot(ground.normal) > kSteep)) return std::nullopt;
+    const double skin = part_of(type, kSkin);
+    if (depth_of(step, m) > skin) return std::nullopt;
+    for (const Contact c : contacts_of(step, m))
+        if (!(height_over(*face, c, m.body) >= -skin)) return std::nullopt;
+    return face;
+}
+
 /// Whether the meeting is a seam, as a face of the body's ground tells.
 bool is_seam_at(const Face& ground, const Simulation& simulation, const StepData& step,
                 const Meeting& m) {
     const Vec4 normal = normal_of(step, m);
     if (ground.normal.dot(normal) >= kSame) return false;
     const ContactList::Part contacts = contacts_of(step, m);
-    const auto height_over = [&](const Face& face, const Contact& c) {
-        return face.normal.dot(point_below(c, m.body)) - face.offset;
-    };
     const double flush = part_of(simulation.type_of(m.body), kFlush);
     const Placed other(simulation, step, m.other);
     const std::optional<Face> face = other.face_near(ground.normal);
     // No part of a body is over its own face, but a point may be by what the bodies lean.
     if (!face || !are_flush(*face, ground, simulation, step, m.body))
         for (const Contact c : contacts)
-            if (height_over(ground, c) > flush) return false;
-    // The points may be few of those where the bodies touch: nor may the other body rise there.
-    if (!face) return other.depth_under(ground) >= -flush;
+            if (height_over(ground, c, m.body) > flush) return false;
+    // The points may be few of those where the bodies touch: nor may the other body rise there, but
+    // by a face that the body comes to.
+    if (!face) {
+        if (other.depth_under(ground) >= -flush) return true;
+        const std::optional<Face> rising = rising_face(ground, simulation, step, m);
+        return rising && rising->normal.dot(normal) < kSame;
+    }
     if (face->normal.dot(normal) >= kSame) return false;
     const double skin = part_of(simulation.type_of(m.body), kSkin);
     for (const Contact c : contacts)
-        if (!(height_over(*face, c) >= -skin)) return false;
+        if (!(height_over(*face, c, m.body) >= -skin)) return false;
     return true;
 }
 
@@ -216,7 +240,7 @@ void SeamJudge::judge(const Simulation& simulation, const StepData& step,
         const auto told = std::find_if(grounds_.begin(), grounds_.end(), [&](const Ground& g) {
             return !g.is_seam && g.meeting != &m && is_seam_at(g.face, simulation, step, m);
         });
-        if (told != grounds_.end()) correct_seam(told->face.normal, simulation, step, m);
+        if (told != grounds_.end()) correct_seam(told->face, simulation, step, m);
     }
 }
 
@@ -256,7 +280,6 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     find_floor(face, simulation, step, meetings);
     if (floor_.size() < 2) return;
     const BodyId body = meetings[0].body;
-    const Placed placed(simulation, step, body);
     double margin = 0;
     for (const Floor& f : floor_)
         margin =
@@ -266,12 +289,7 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     double beside = part_of(type, kFlush);
     for (const Meeting& m : meetings) beside += depth_of(step, m);
     beside = std::min(beside, part_of(type, kSkin));
-    Hyperplane plane;
-    plane.normal = face.normal;
-    plane.offset = face.offset;
-    on_plane_.clear();
-    find_contacts(0, placed.shape, placed.pose, 1, plane, placed.pose, margin, on_plane_);
-
+    find_on_plane(face, simulation, step, body, margin);
     for (const Contact& c : on_plane_) {
         const Vec4 point = point_below(c, 0);
         const auto under = std::find_if(floor_.begin(), floor_.end(), [&](const Floor& f) {
@@ -282,6 +300,16 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     }
     if (on_plane_.empty()) return;
     for (const Floor& f : floor_) stand_on(f, simulation, step);
+}
+
+void SeamJudge::find_on_plane(const Face& face, const Simulation& simulation, const StepData& step,
+                              BodyId body, double margin) {
+    const Placed placed(simulation, step, body);
+    Hyperplane plane;
+    plane.normal = face.normal;
+    plane.offset = face.offset;
+    on_plane_.clear();
+    find_contacts(0, placed.shape, placed.pose, 1, plane, placed.pose, margin, on_plane_);
 }
 
 /// The points of on_plane_ that are over one part of the floor.
@@ -307,13 +335,30 @@ void SeamJudge::stand_on(const Floor& floor, const Simulation& simulation, const
     joined_.push_back(&m);
 }
 
+/// The points over a face of the other body that rises from the ground: also those that are beside
+/// it but may come over it within the sub-step. There the face is covered by the ground.
+void SeamJudge::rise_on(const Face& face, const Simulation& simulation, const StepData& step,
+                        const Meeting& m) {
+    const Placed other(simulation, step, m.other);
+    const double margin = margins_of(simulation, step, m.body, m.other).as_they_move;
+    find_on_plane(face, simulation, step, m.body, margin);
+    Floor floor{&m, face, 0};
+    for (std::size_t i = 0; i < on_plane_.size(); ++i)
+        if (other.distance_to(point_below(on_plane_[i], 0)) <= margin) floor.points |= 1u << i;
+    stand_on(floor, simulation, step);
+}
+
 /// The points over the other body's own face. There are none if the body reaches over that face's
 /// rim by nothing to speak of, as most do that touch at an edge.
-void SeamJudge::correct_seam(const Vec4& up, const Simulation& simulation, const StepData& step,
+void SeamJudge::correct_seam(const Face& ground, const Simulation& simulation, const StepData& step,
                              const Meeting& m) {
+    const Vec4& up = ground.normal;
     const auto first = static_cast<std::uint32_t>(contacts.size());
     const Vec4 normal = normal_of(step, m);
     const auto face = Placed(simulation, step, m.other).face_near(up);
+    if (!face)
+        if (const auto rising = rising_face(ground, simulation, step, m))
+            return rise_on(*rising, simulation, step, m);
     const double flush = part_of(simulation.type_of(m.body), kFlush);
     if (face && (face->normal.dot(normal) > kSteep || depth_of(step, m) > flush)) {
         const BodyId a = std::min(m.body, m.other), b = std::max(m.body, m.other);

@@ -38,7 +38,8 @@ struct SeamCorrection {
 ///   have with a hyperplane there, each with the body under it, if there is one under all of them.
 /// - Otherwise a meeting is a seam if all its points are on or under the plane of the ground's
 ///   face, but push another way: lifted out of the ground, the body would not touch there. It is
-///   given the points over the other body's own face along the plane, if there is one, else none.
+///   given the points over the other body's own face along the plane, or over one that rises from
+///   the plane there as a floor that does not move does from a ramp, if there is one, else none.
 ///   Only ground whose own meeting is no seam tells so: no body is left without.
 class SeamJudge {
   public:
@@ -71,8 +72,12 @@ class SeamJudge {
     void join_floor(const Face& face, const Simulation& simulation, const StepData& step,
                     std::span<const Meeting> meetings);
     void stand_on(const Floor& floor, const Simulation& simulation, const StepData& step);
-    void correct_seam(const Vec4& up, const Simulation& simulation, const StepData& step,
+    void correct_seam(const Face& ground, const Simulation& simulation, const StepData& step,
                       const Meeting& meeting);
+    void rise_on(const Face& face, const Simulation& simulation, const StepData& step,
+                 const Meeting& meeting);
+    void find_on_plane(const Face& face, const Simulation& simulation, const StepData& step,
+                       BodyId body, double margin);
     void finish(const Meeting& meeting, std::uint32_t first, double cosine);
 
     std::vector<Ground> grounds_;

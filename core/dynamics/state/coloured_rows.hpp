@@ -128,13 +128,17 @@ using LaneInertia = std::array<Eight, 21>;
 struct PairInertia {
     LaneInertia a, b;
 };
-/// The same across the normal, which friction changes and sees: the velocity along x, y, z and the
-/// turning in xy, xz, yz.
+/// What impulses do to the motion across the normal, which friction changes and sees: the velocity
+/// along x, y, z and the turning in xy, xz, yz.
+template <class Lanes>
+struct AcrossResponse {
+    std::array<Lanes, 21> across;               ///< of impulses across the normal: symmetric
+    std::array<std::array<Lanes, 6>, 4> along;  ///< of those along it
+};
 struct PairFriction {
     Eight friction;
-    std::array<Eight, 6> motion;
-    std::array<RoughEight, 21> response;               ///< to impulses across the normal: symmetric
-    std::array<std::array<RoughEight, 6>, 4> coupled;  ///< to impulses along the normal
+    std::array<Eight, 6> motion;  ///< of b against a at the start, across the normal
+    AcrossResponse<RoughEight> response;
 };
 /// A contact of any two bodies. Its height above the frame's centre is left out: points of one pair
 /// that bear a load are in one plane, but for their overlaps.
@@ -172,6 +176,7 @@ struct ColouredIslands {
     bool friction = false;                  ///< of any body type; else there are no such rows
     bool rolling = false;                   ///< likewise of rolling friction
     bool turns_unevenly = false;            ///< any body is not isotropic
+    bool slender = false;                   ///< see Needs::slender
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
     std::vector<std::uint32_t>
         first_colour;               ///< likewise; an island's last one is what is left over
@@ -204,8 +209,11 @@ struct ColouredIslands {
     std::vector<PairFrame> frames;              ///< of `general`
     std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
     std::vector<PairFriction> pair_friction;    ///< likewise
-    std::vector<GeneralRow> rows;               ///< of `general`, see Batch::row
-    NormalRelax relax;                          ///< likewise
+    /// Likewise, if any body is slender: instead of PairFriction::response. The rounding of what a
+    /// moment about its length does would be more than what any other does.
+    std::vector<AcrossResponse<Eight>> slender_response;
+    std::vector<GeneralRow> rows;  ///< of `general`, see Batch::row
+    NormalRelax relax;             ///< likewise
     /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
     /// of the velocity along it at another; 0 for points that a batch does not have.
     std::vector<RoughEight> point_response;

@@ -69,6 +69,12 @@ std::vector<TypeProperties> type_properties(const Bodies& bodies) {
     return all;
 }
 
+double slenderness(const TypeProperties& type) {
+    const Bivector& b = type.inverse_inertia;
+    const auto [least, most] = std::minmax({b.xy, b.xz, b.xw, b.yz, b.yw, b.zw});
+    return least > 0 ? most / least : 1;
+}
+
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse) {
     if (type.isotropic) return type.inverse_inertia.xy * impulse;
     return apply(type.inverse_inertia, principal_rotor(type, rotor), impulse);

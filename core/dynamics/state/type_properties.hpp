@@ -34,6 +34,10 @@ struct TypeProperties {
 /// @return one entry for each of bodies.types
 std::vector<TypeProperties> type_properties(const Bodies& bodies);
 
+/// The largest of a body's inverse inertias over the least, as contacts see them; 1 where these do
+/// not turn it.
+double slenderness(const TypeProperties& type);
+
 /// From a type's principal axes to the world.
 inline Rotor principal_rotor(const TypeProperties& type, const Rotor& rotor) {
     return type.has_axes ? rotor * type.axes : rotor;

@@ -162,9 +162,9 @@ TEST(ColouredSolver, LeavesOutWhatRoundingLeaves) {
         for (const auto& column : inertia.column)
             for (const float x : column) of_body.add(x);
     for (const PairFriction& pair : step.coloured.pair_friction) {
-        for (const RoughEight& entry : pair.response)
+        for (const RoughEight& entry : pair.response.across)
             for (const std::uint16_t x : entry.lane) across.add(simd::from_half(x));
-        for (const auto& row : pair.coupled)
+        for (const auto& row : pair.response.along)
             for (const RoughEight& entry : row)
                 for (const std::uint16_t x : entry.lane) along.add(simd::from_half(x));
     }
