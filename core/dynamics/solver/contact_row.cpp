@@ -90,7 +90,8 @@ void start_row(const Simulation& simulation, const StepData& step, const Contact
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 
-    if (row.friction > 0) row.slip_by_turning = slip_by_turning(simulation, step, contact, cause);
+    row.slip_by_turning =
+        row.friction > 0 ? slip_by_turning(simulation, step, contact, cause) : Vec4(Vec4::Zero());
 
     // The normal may have turned since the impulse was.
     row.normal_impulse = impulse.normal;
