@@ -20,7 +20,7 @@ void for_each_range(std::size_t count, std::size_t grain, const Work& work) {
     const auto work_on = [&](std::size_t chunk) {
         work(Range{chunk * grain, std::min(count, (chunk + 1) * grain)});
     };
-    if (chunks > 1 && !is_alone()) return tbb::parallel_for(std::size_t{0}, chunks, work_on);
+    if (!is_alone()) return tbb::parallel_for(std::size_t{0}, chunks, work_on);
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) work_on(chunk);
 }
 
