@@ -64,7 +64,9 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.friction = simulation.needs.friction;
     coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
-    coloured.slender = simulation.needs.slender;
+    coloured.slender =
+        std::any_of(simulation.types.begin(), simulation.types.end(),
+                    [](const TypeProperties& type) { return slenderness(type) > kSlender; });
     coloured.first_body.assign(1, 1);
     coloured.first_colour.assign(1, 0);
     coloured.mass_unit.clear();

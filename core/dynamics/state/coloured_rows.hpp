@@ -176,7 +176,7 @@ struct ColouredIslands {
     bool friction = false;                  ///< of any body type; else there are no such rows
     bool rolling = false;                   ///< likewise of rolling friction
     bool turns_unevenly = false;            ///< any body is not isotropic
-    bool slender = false;                   ///< see Needs::slender
+    bool slender = false;                   ///< any body is: see kSlender
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
     std::vector<std::uint32_t>
         first_colour;               ///< likewise; an island's last one is what is left over

@@ -30,7 +30,6 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
         });
     needs.restitution = any([](const auto& type) { return type.restitution > 0; });
     needs.uneven_inertia = any([](const auto& type) { return !type.isotropic; });
-    needs.slender = any([](const auto& type) { return slenderness(type) > kSlender; });
     needs.seams = std::any_of(bodies.types.begin(), bodies.types.end(), [](const BodyType& type) {
         return std::visit([]<class S>(const S&) { return S::kBounded && HasFaces<S>; }, type.shape);
     });

@@ -17,8 +17,6 @@ struct Needs {
                                  ///< friction, and friction can turn some body; needs turning
     bool restitution = true;     ///< rebounds: a body has restitution
     bool uneven_inertia = true;  ///< 6x6 inertia: some movable body's depends on the direction
-    bool slender = true;         ///< responses kept whole: some movable body's inertias differ by
-                                 ///< more than kSlender
     bool seams = true;           ///< faces that may lie in one plane: a bounded body has faces
     bool manifolds = true;       ///< kept ones: two bodies have nothing but flat faces
     bool turning = true;         ///< rotors and angular velocities: some body turns, or contacts
