@@ -68,8 +68,10 @@ void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part)
 /// Whether any of the bodies whirls().
 bool any_whirls(const ColouredStage& stage, Range bodies);
 
-/// Keeps the changes of the load, and takes back what the push then changed.
+/// Keeps the changes of the load; leaves no other to bodies of which turns_push() says so; takes
+/// back what the push changed.
 void begin_push(const ColouredStage& stage, Range bodies);
+void end_push(const ColouredStage& stage, Range bodies);
 void take_push_back(const ColouredStage& stage, Range bodies);
 
 /// One coloured island and its colours.
@@ -131,6 +133,23 @@ void for_all_rows(const ColouredIsland& island, const Threads& threads, const Ro
                            at_work.for_batches(batches.round, 1, round);
                            at_work.for_batches(batches.general, kManifoldPoints, general);
                        });
+}
+
+/// Of the rows' impulses.
+template <class Threads>
+void leave_part_of_rows(const ColouredIsland& island, const Threads& threads, float part) {
+    const ColouredStage& stage = island.stage();
+    for_all_rows(
+        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, part); },
+        [&](BatchRange some) { leave_part_of_general(stage, some, part); });
+}
+/// Of the impulses, and of what they have changed.
+template <class Threads>
+void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
+    const auto left = static_cast<float>(part);
+    leave_part_of_rows(island, threads, left);
+    threads.for_bodies(island.bodies(),
+                       [&](Range bodies) { leave_part_of_changes(island.stage(), bodies, left); });
 }
 
 }  // namespace tesserae

@@ -114,6 +114,21 @@ void begin_push(const ColouredStage& stage, Range bodies) {
     }
 }
 
+void end_push(const ColouredStage& stage, Range bodies) {
+    ColouredIslands& coloured = stage.step.coloured;
+    if (!coloured.turns_unevenly) return;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = coloured.bodies[i];
+        BodyChange& change = coloured.changes[i];
+        const PackedChange& before = coloured.last_changes[i];
+        const Bivector pushed = angular_change(change) - angular_change(before);
+        const Bivector turning = stage.step.angular_velocity[id] + angular_change(change);
+        if (!turns_push(stage.simulation, stage.step, id, turning, pushed)) continue;
+        change.velocity = before.velocity, change.first_planes = before.first_planes;
+        change.rest[0] = before.rest[0], change.rest[1] = before.rest[1];
+    }
+}
+
 void take_push_back(const ColouredStage& stage, Range bodies) {
     StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {

@@ -80,6 +80,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
         const double left = std::max(residual, directions->find());
         if (i + 1 >= effort.least && left <= effort.enough) break;
     }
+    if (directions && residual > effort.enough) directions->end_gain();
     return residual;
 }
 
@@ -220,18 +221,6 @@ double energy_of_load(const ColouredIsland& island, const Threads& threads) {
     return energy;
 }
 
-/// Of the impulses, and of what they have changed.
-template <class Threads>
-void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
-    const ColouredStage& stage = island.stage();
-    const auto left = static_cast<float>(part);
-    for_all_rows(
-        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, left); },
-        [&](BatchRange some) { leave_part_of_general(stage, some, left); });
-    threads.for_bodies(island.bodies(),
-                       [&](Range bodies) { leave_part_of_changes(stage, bodies, left); });
-}
-
 /// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
 /// @return whether they were
 template <class Threads>
@@ -256,6 +245,13 @@ void leave_recalled(const ColouredIsland& island, const Threads& threads) {
         leave_part_of_load(island, threads, load.best_part());
 }
 
+/// After sweeps of a load; see LoadWork::is_gain().
+template <class Threads>
+void end_gain(const ColouredIsland& island, const Threads& threads) {
+    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
+    if (load.is_gain(0)) leave_part_of_load(island, threads, load.best_part());
+}
+
 /// solve_island() of a coloured island.
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
@@ -272,12 +268,14 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     } else {
         if (impulse) leave_recalled(coloured, threads);
         step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
+        if (impulse && step.residual[island] > effort.enough) end_gain(coloured, threads);
     }
     if (impulse) keep_coloured(coloured, threads);
     if (step.pushed[island]) {
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
         iterate_coloured(coloured, Pass::kPush,
                          effort_of_push(simulation, step.islands.contacts[island]), threads, lanes);
+        threads.for_bodies(coloured.bodies(), [&](Range bodies) { end_push(stage, bodies); });
     }
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }

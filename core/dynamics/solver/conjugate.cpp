@@ -203,18 +203,29 @@ void begin_recalled_general(const ColouredStage& stage, BatchRange batches) {
     visit_general(stage.step.coloured, batches, begin_at_none);
 }
 
-void leave_part(const ColouredStage& stage, Range bodies, float part) {
+void take_recalled(const ColouredStage& stage, Range bodies) {
+    ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        BodyChange& change = stage.step.coloured.changes[i];
-        store(part * load(change), change);
+        store(load(coloured.changes[i]), coloured.recalled[i]);
+        store(Twelve{}, coloured.changes[i]);
     }
 }
 
-void take_recalled(const ColouredStage& stage, Range bodies) {
+BodySums weigh_all(const ColouredStage& stage, Range bodies) {
+    const ColouredIslands& coloured = stage.step.coloured;
+    BodySums sums = {};
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
+        sums[0] +=
+            2 * energy_of(coloured, i, load(coloured.changes[i]) + load(coloured.recalled[i]));
+    return sums;
+}
+
+void leave_part_of_all(const ColouredStage& stage, Range bodies, float part) {
+    ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        BodyChange& change = stage.step.coloured.changes[i];
-        change.velocity = change.first_planes = {};
-        change.rest[0] = change.rest[1] = 0;
+        const Twelve recalled = load(coloured.recalled[i]);
+        const Twelve all = load(coloured.changes[i]) + recalled;
+        store(part * all - recalled, coloured.changes[i]);
     }
 }
 

@@ -32,15 +32,13 @@ bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 /// The energies of what the impulses that the load starts from have changed, and of what gravity
 /// has.
 BodySums weigh_recalled(const ColouredStage& stage, Range bodies);
-/// Before the rows' work on that is weighed, as that of a step from no impulses; then the part of
-/// it that is left is gone along, by go_along_round() and go_along_general().
+/// Before the rows' work on that is weighed, as that of a step from no impulses.
 void begin_recalled_round(const ColouredStage& stage, BatchRange batches);
 void begin_recalled_general(const ColouredStage& stage, BatchRange batches);
-void leave_part(const ColouredStage& stage, Range bodies, float part);
 
-/// What is recalled is no change any more: what is left is small, and so is its rounding, of which
-/// directions would grow. The rows' starts have it first, by take_recalled_round() and
-/// take_recalled_general(), and the velocities, by add_changes().
+/// What is recalled is kept apart and no change any more: what is left is small, and so is its
+/// rounding, of which directions would grow. The rows' starts have it first, by
+/// take_recalled_round() and take_recalled_general(), and the velocities, by add_changes().
 void take_recalled(const ColouredStage& stage, Range bodies);
 
 /// What the next pair of sweeps goes on from, without a direction: where the last one ended.
@@ -58,6 +56,10 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches);
 /// @param carried   b
 /// @return p.Ap and the largest square of a change of velocity
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried);
+
+/// Twice the kinetic energy of all that the load has changed, with what is recalled; a part of it.
+BodySums weigh_all(const ColouredStage& stage, Range bodies);
+void leave_part_of_all(const ColouredStage& stage, Range bodies, float part);
 
 /// The beginning of the next pair.
 /// @param length   a

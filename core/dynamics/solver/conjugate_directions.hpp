@@ -18,11 +18,11 @@ class ConjugateDirections {
     ConjugateDirections(const ColouredIsland& island, const Threads& threads)
         : island_(island), threads_(threads) {
         const ColouredStage& stage = island.stage();
-        double recalled = 0, weight = 0;  // energies
+        double weight = 0;
         for (const BodySums& piece : sums_of([](auto... of) { return weigh_recalled(of...); }))
-            recalled += piece[0], weight += piece[1];
-        if (recalled > LoadWork::least_of_stop(weight)) recalled *= leave_part_of(recalled, weight);
-        rounding_ = kFloatStep * kFloatStep * recalled;
+            recalled_ += piece[0], weight += piece[1];
+        if (recalled_ > LoadWork::least_of_stop(weight)) leave_part_of_recalled(weight);
+        rounding_ = kFloatStep * kFloatStep * recalled_;
         for_all_rows(
             island, threads, [&](BatchRange some) { take_recalled_round(stage, some); },
             [&](BatchRange some) { take_recalled_general(stage, some); });
@@ -33,9 +33,7 @@ class ConjugateDirections {
     /// The direction after a pair of sweeps.
     /// @return the largest change of a body's velocity by a step along it [m/s]
     double find() {
-        BodySums sums = {};  // r.z, r.p_last and the energy
-        for (const BodySums& piece : sums_of([](auto... of) { return weigh_step(of...); }))
-            for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
+        BodySums sums = weigh();  // r.z, r.p_last and the energy
         rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
         const auto [of_step, of_all] = work();
         sums[0] += of_step, sums[1] += of_direction_, sums[2] += of_all;
@@ -64,6 +62,19 @@ class ConjugateDirections {
         plain_ = std::max(0, plain_ - 1);
         of_direction_ = 0;
         for_bodies([](auto... of) { begin_directions(of...); });
+    }
+
+    /// After the last pair: leaves the best part of impulses, recalled ones too, that are a gain.
+    void end_gain() {
+        const double gain = weigh()[2] + work()[1] - recalled_;
+        if (!(gain > 0)) return;
+        double twice_energy = 0;
+        for (const BodySums& piece : sums_of([](auto... of) { return weigh_all(of...); }))
+            twice_energy += piece[0];
+        const LoadWork load = {gain - 0.5 * twice_energy, twice_energy};
+        const auto left = static_cast<float>(load.best_part());
+        leave_part_of_rows(island_, threads_, left);
+        for_bodies([left](auto... of) { leave_part_of_all(of..., left); });
     }
 
     // The rows' part of a pair, batch by batch as they are swept, while they are in the caches.
@@ -98,9 +109,8 @@ class ConjugateDirections {
 
     /// Loads that are more than weights may be none: what ended a blow, and would be replayed. The
     /// part of them that is left is the one that takes the most energy.
-    /// @param recalled, weight   see weigh_recalled()
-    /// @return its square
-    double leave_part_of(double recalled, double weight) {
+    /// @param weight   see weigh_recalled()
+    void leave_part_of_recalled(double weight) {
         const ColouredStage& stage = island_.stage();
         for_all_rows(
             island_, threads_,
@@ -112,16 +122,19 @@ class ConjugateDirections {
                 begin_recalled_general(stage, some);
                 weigh_general_step(stage, some);
             });
-        const LoadWork load = {-work()[0], 2 * recalled};
+        const LoadWork load = {-work()[0], 2 * recalled_};
         const bool stopped = is_stopped(stage.simulation, stage.step, island_.number());
-        if (!load.is_too_much(weight, stopped)) return 1;
+        if (!load.is_too_much(weight, stopped)) return;
         const double part = load.best_part();
-        const auto left = static_cast<float>(part);
-        for_bodies([left](auto... of) { leave_part(of..., left); });
-        for_all_rows(
-            island_, threads_, [&](BatchRange some) { go_along_round(stage, some, 0, left); },
-            [&](BatchRange some) { go_along_general(stage, some, 0, left); });
-        return part * part;
+        leave_part_of_load(island_, threads_, part);
+        recalled_ *= part * part;
+    }
+    /// Of a pair: the bodies' part of r.z, r.p_last and the energy.
+    BodySums weigh() const {
+        BodySums sums = {};
+        for (const BodySums& piece : sums_of([](auto... of) { return weigh_step(of...); }))
+            for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
+        return sums;
     }
     /// After a step along a direction that led away from the solution there are none for a while.
     /// @param ratio   of r.z to that before the step
@@ -174,6 +187,7 @@ class ConjugateDirections {
 
     const ColouredIsland& island_;
     const Threads& threads_;
+    double recalled_ = 0;                ///< energy of what has been taken, see weigh_recalled()
     double slope_ = 0, last_slope_ = 0;  ///< r.z
     double of_direction_ = 0;            ///< the rows' part of r.p
     double last_energy_ = 0;             ///< at the end of the last pair

@@ -68,6 +68,17 @@ bool whirls(const Simulation& simulation, const StepData& step, BodyId id) {
            0.5 * step.h * type.arm * norm(step.angular_velocity[id]) > kDeepest / kSlop * type.slop;
 }
 
+bool turns_push(const Simulation& simulation, const StepData& step, BodyId id,
+                const Bivector& turning, const Bivector& pushed) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (type.isotropic || step.h * type.arm * norm(pushed) <= type.slop) return false;
+    const auto energy_at = [&](const Rotor& rotor) {
+        return dot(pushed, angular_momentum(type, rotor, pushed));
+    };
+    const Rotor &now = step.rotor[id], then = exp(-0.25 * step.h * turning) * now;
+    return energy_at(then) > kGivenBack * energy_at(now);
+}
+
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {
     ContactRow row;
     row.a = contact.a;

@@ -306,6 +306,22 @@ void restart_without_friction(const Simulation& simulation, StepData& step, std:
     step.has_rows[island] = 0;  // they are no longer those of the contacts
 }
 
+/// Kept, and not won back from the impulses: what jams may leave the finite range. Until this
+/// thread keeps others.
+std::span<const BodyMotion> keep_motions(const StepData& step, std::span<const BodyId> bodies) {
+    thread_local std::vector<BodyMotion> motions;
+    motions.clear();
+    for (const BodyId id : bodies) motions.push_back(motion_of(step, id));
+    return motions;
+}
+void restore_motions(StepData& step, std::span<const BodyId> bodies,
+                     std::span<const BodyMotion> motions) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        step.velocity[bodies[i]] = motions[i].velocity;
+        step.angular_velocity[bodies[i]] = motions[i].angular_velocity;
+    }
+}
+
 /// The first part of a blow; see can_jam().
 void compress(const Simulation& simulation, StepData& step, std::size_t island, const Blow& blow,
               const Effort& effort) {
@@ -321,19 +337,30 @@ void compress(const Simulation& simulation, StepData& step, std::size_t island, 
             sum += twice_kinetic_energy(simulation, step, id, motion_of(step, id));
         return sum;
     };
-    // Kept, and not won back from the impulses: what jams may leave the finite range.
-    thread_local std::vector<BodyMotion> before;
-    before.clear();
-    for (const BodyId id : bodies) before.push_back(motion_of(step, id));
+    const std::span<const BodyMotion> before = keep_motions(step, bodies);
     const double energy_before = energy();
     run_pass(simulation, step, rows, Pass::kSolve, effort);
     if (!has_jammed(energy_before, energy())) return;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        step.velocity[bodies[i]] = before[i].velocity;
-        step.angular_velocity[bodies[i]] = before[i].angular_velocity;
-    }
+    restore_motions(step, bodies, before);
     restart_without_friction(simulation, step, island);
     run_pass(simulation, step, rows, Pass::kSolve, effort);
+}
+
+/// After the load; none at all where turns_push() says so of any body.
+void push(const Simulation& simulation, StepData& step, std::size_t island) {
+    const std::span<ContactRow> rows = rows_of(step, island);
+    const std::span<const BodyId> bodies = bodies_of(simulation, step, island);
+    const std::span<const BodyMotion> before = keep_motions(step, bodies);
+    run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation, rows.size()));
+    bool turns = false;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const Bivector& turning = step.angular_velocity[bodies[i]];
+        turns |=
+            turns_push(simulation, step, bodies[i], turning, turning - before[i].angular_velocity);
+    }
+    if (!turns) return;
+    restore_motions(step, bodies, before);
+    step.pushed[island] = 0;
 }
 
 }  // namespace
@@ -372,8 +399,7 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, step, island));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
-    if (step.pushed[island])
-        run_pass(simulation, step, rows, Pass::kPush, effort_of_push(simulation, rows.size()));
+    if (step.pushed[island]) push(simulation, step, island);
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {

@@ -36,6 +36,7 @@ void size_relax(const Simulation& simulation, std::size_t rows, NormalRelax& rel
 
 void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
+    resize_anew(coloured.recalled, coloured.bodies.size());
     if (coloured.turns_unevenly) resize_anew(coloured.inertias, coloured.bodies.size());
     size_impulses(coloured.round.size(), coloured.friction, coloured.last_round);
     size_impulses(coloured.round.size(), coloured.friction, coloured.round_direction);

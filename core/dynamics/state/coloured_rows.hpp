@@ -188,8 +188,9 @@ struct ColouredIslands {
 
     std::vector<BodyChange> changes;  ///< of `bodies`
     // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
-    // with, x, and the direction, p.
-    std::vector<PackedChange> last_changes, direction;
+    // with, x, and the direction, p; and what the recalled impulses did before, see
+    // take_recalled().
+    std::vector<PackedChange> last_changes, direction, recalled;
     std::vector<BodySums> body_sums;  ///< of pieces of each island's `bodies`
     RowImpulses<4> last_round;
     RowImpulses<3> last_general;

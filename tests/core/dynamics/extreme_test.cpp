@@ -322,6 +322,22 @@ TEST(Extreme, CardsAndDiscsThatTumbleOntoAPlaneLieOnIt) {
     }
 }
 
+/// The most energy that bodies win from any time on, as a part of what they begin with.
+double part_won(const Bodies& bodies, double seconds, double step) {
+    World world(bodies, impulse());
+    const auto energy = [&] {
+        return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
+    };
+    const double start = energy();
+    double least = start, most_won = 0;
+    for (double t = 0; t < seconds; t += step) {
+        world.step(step);
+        least = std::min(least, energy());
+        most_won = std::max(most_won, energy() - least);
+    }
+    return most_won / start;
+}
+
 /// Rods and boards poured on each other: what turns them about their length is up to a million
 /// times what turns them across it, which rounding must not mix up.
 TEST(Extreme, RodsThatFallAcrossEachOtherGainNoEnergy) {
@@ -343,18 +359,43 @@ TEST(Extreme, RodsThatFallAcrossEachOtherGainNoEnergy) {
             add(bodies, type, {aside[0], 0.8 + 0.7 * i, aside[2], aside[3]}, Vec4::Zero(), {},
                 exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]}));
         }
-        World world(bodies, impulse());
-        const auto energy = [&] {
-            return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
-        };
-        const double start = energy();
-        double least = start, most_won = 0;
-        for (double t = 0; t < 1.5; t += step) {
-            world.step(step);
-            least = std::min(least, energy());
-            most_won = std::max(most_won, energy() - least);
+        EXPECT_LT(part_won(bodies, 1.5, step), 1e-3) << scene << ": " << thin << " m";
+    }
+}
+
+/// A coin, a disc, a needle or a card.
+Shape thin_shape(int kind, double thin) {
+    Spherinder coin, needle;
+    coin.radius = 0.15, coin.height = thin;
+    needle.radius = 0.5 * thin, needle.height = 0.3;
+    Cubinder disc;
+    disc.radius = 0.15, disc.size = {thin, thin};
+    complete(coin), complete(needle), complete(disc);
+    if (kind % 4 == 0) return coin;
+    if (kind % 4 == 1) return needle;
+    if (kind % 4 == 2) return disc;
+    return box_type({0.3, thin, 0.3, 0.3}).shape;
+}
+
+/// Discs, coins and needles of 0.3 to 10 % of their width, poured: masses of up to 1:10^4, of which
+/// sweeps do not find the load. What they find then is no gain.
+TEST(Extreme, ThinBodiesOfUnequalMassesThatArePouredGainNoEnergy) {
+    std::mt19937_64 random(7);
+    for (int scene = 0; scene < 5; ++scene) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        for (int i = 0; i < 8; ++i) {
+            const double thin = 0.3 * std::pow(10, uniform(random, -2.5, -1));
+            BodyType type;
+            type.shape = thin_shape(i, thin);
+            type.friction = 0.5;
+            type.mass = 1000 * std::visit([](const auto& of) { return volume(of); }, type.shape);
+            const Vec4 a = random_vector(random, 2), b = random_vector(random, 2);
+            const Vec4 aside = random_vector(random, 0.1);
+            add(bodies, type, {aside[0], 0.2 + 0.1 * i, aside[2], aside[3]}, Vec4::Zero(), {},
+                exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]}));
         }
-        EXPECT_LT(most_won, 1e-3 * start) << scene << ": " << thin << " m";
+        EXPECT_LT(part_won(bodies, 1, kStep), 1e-3) << scene;
     }
 }
 
