@@ -74,6 +74,9 @@ template <class V>
 }
 
 [[gnu::always_inline]] inline double square_root(double x) { return std::sqrt(x); }
+[[gnu::always_inline]] inline Double2 square_root(Double2 x) {
+    return Double2{std::sqrt(x[0]), std::sqrt(x[1])};
+}
 [[gnu::always_inline]] inline Double4 square_root(Double4 x) {
 #ifdef __AVX__
     return _mm256_sqrt_pd(x);
@@ -162,6 +165,14 @@ template <class V>
 #else
     return static_cast<int>((v[0] & 1) | (v[1] & 2) | (v[2] & 4) | (v[3] & 8));
 #endif
+}
+/// Of what comparing Double2s or Double4s gives.
+template <class Mask>
+[[gnu::always_inline]] inline bool in_all_lanes(Mask v) {
+    if constexpr (sizeof(v) == sizeof(Double2))
+        return (v[0] & v[1]) != 0;
+    else
+        return lanes_set(same_bits<Mask4>(v)) == 15;
 }
 /// Whether a <= b in all lanes.
 [[gnu::always_inline]] inline bool nowhere_above(float a, float b) { return a <= b; }

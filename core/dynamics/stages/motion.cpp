@@ -1,5 +1,6 @@
 #include "core/dynamics/stages/motion.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/dynamics/stages/free_path.hpp"
@@ -8,14 +9,32 @@
 namespace tesserae {
 namespace {
 
-void advance_half(const Simulation& simulation, StepData& step, BodyId id) {
-    const TypeProperties& type = simulation.type_of(id);
-    if (!type.bounded) return;
+/// Of one body or of two.
+void advance_half(const Simulation& simulation, StepData& step, Range bodies) {
     const double half = 0.5 * step.h;
-    step.position[id] += half * step.velocity[id];
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
+        if (simulation.type_of(static_cast<BodyId>(i)).bounded)
+            step.position[i] += half * step.velocity[i];
     if (!simulation.needs.turning) return;
-    turn_freely(type, simulation.settings.integrator, half, step.rotor[id],
-                step.angular_velocity[id]);
+    const auto turning = [&](std::size_t i) {
+        return FreeBody{simulation.type_of(static_cast<BodyId>(i)), step.rotor[i],
+                        step.angular_velocity[i]};
+    };
+    const RotationIntegrator integrator = simulation.settings.integrator;
+    const FreeBody a = turning(bodies.begin), b = turning(bodies.end - 1);
+    if (bodies.end - bodies.begin == 2 && a.type.bounded && b.type.bounded)
+        return turn_freely(a, b, integrator, half);
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const FreeBody body = turning(i);
+        if (body.type.bounded) turn_freely(body.type, integrator, half, body.rotor, body.omega);
+    }
+}
+
+/// Calls visit(one body or two) for all.
+template <class Visit>
+void for_twos(Range bodies, const Visit& visit) {
+    for (std::size_t i = bodies.begin; i < bodies.end; i += 2)
+        visit(Range{i, std::min(i + 2, bodies.end)});
 }
 
 /// How far from where it is a body's surface can get within a time.
@@ -31,30 +50,31 @@ double reach(const Simulation& simulation, const StepData& step, BodyId id, doub
 bool advance_first_half(const Simulation& simulation, StepData& step, Range bodies) {
     const Bodies& last = simulation.bodies;
     bool any_fast = false;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const auto id = static_cast<BodyId>(i);
-        if (step.substep == 0) {
-            step.position[id] = last.position[id];
-            step.velocity[id] = last.velocity[id];
-            if (simulation.needs.turning) {
-                step.rotor[id] = last.rotor[id];
-                step.angular_velocity[id] = last.angular_velocity[id];
-            }
+    for_twos(bodies, [&](Range some) {
+        for (std::size_t i = some.begin; step.substep == 0 && i < some.end; ++i) {
+            step.position[i] = last.position[i];
+            step.velocity[i] = last.velocity[i];
+            if (!simulation.needs.turning) continue;
+            step.rotor[i] = last.rotor[i];
+            step.angular_velocity[i] = last.angular_velocity[i];
         }
-        advance_half(simulation, step, id);
-        any_fast = is_fast(simulation, step, id) || any_fast;
-        if (!is_asleep(step, id)) set_inverse_inertia(simulation, step, id);
-    }
+        advance_half(simulation, step, some);
+        for (std::size_t i = some.begin; i < some.end; ++i) {
+            const auto id = static_cast<BodyId>(i);
+            any_fast = is_fast(simulation, step, id) || any_fast;
+            if (!is_asleep(step, id)) set_inverse_inertia(simulation, step, id);
+        }
+    });
     return any_fast;
 }
 
 bool advance_second_half(const Simulation& simulation, StepData& step, Range bodies) {
     bool any_fast = false;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const auto id = static_cast<BodyId>(i);
-        advance_half(simulation, step, id);
-        any_fast = is_fast(simulation, step, id) || any_fast;
-    }
+    for_twos(bodies, [&](Range some) {
+        advance_half(simulation, step, some);
+        for (std::size_t i = some.begin; i < some.end; ++i)
+            any_fast = is_fast(simulation, step, static_cast<BodyId>(i)) || any_fast;
+    });
     return any_fast;
 }
 

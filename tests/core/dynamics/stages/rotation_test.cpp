@@ -119,6 +119,46 @@ TEST(FreeRotation, ByMidpointConvergesInSecondOrder) {
     EXPECT_LT(fine.rotation, 1e-4);
 }
 
+/// Boxes, slender ones and spheres; at rest, slow, fast and at speeds that no step resolves.
+BodyType random_type(std::mt19937_64& random) {
+    if (random() % 5 == 0) return sphere_type(uniform(random, 0.1, 1));
+    Vec4 sides;
+    for (double& side : sides) side = std::pow(10, uniform(random, random() % 3 == 0 ? -3 : -1, 0));
+    return box_type(sides, uniform(random, 0.1, 10));
+}
+Bivector random_spin(std::mt19937_64& random) {
+    if (random() % 10 == 0) return {};
+    const double fastest = std::pow(10, uniform(random, -8, random() % 4 == 0 ? 4 : 1));
+    const Vec4 a = random_vector(random, fastest), b = random_vector(random, fastest);
+    return {a[0], a[1], a[2], b[0], b[1], b[2]};
+}
+
+TEST(FreeRotation, OfTwoBodiesIsThatOfEach) {
+    std::mt19937_64 random(47);
+    for (int i = 0; i < 20000; ++i) {
+        Bodies bodies;
+        for (int k = 0; k < 2; ++k) {
+            const Bivector turn = random_spin(random);
+            add(bodies, random_type(random), Vec4::Zero(), Vec4::Zero(), random_spin(random),
+                exp(turn));
+        }
+        const std::vector<TypeProperties> types = type_properties(bodies);
+        Bodies alone = bodies;
+        const auto integrator =
+            i % 8 == 0 ? RotationIntegrator::kEuler : RotationIntegrator::kMidpoint;
+        const auto body = [&](BodyId id) {
+            return FreeBody{types[bodies.type[id]], bodies.rotor[id], bodies.angular_velocity[id]};
+        };
+        turn_freely(body(0), body(1), integrator, kStep);
+        for (BodyId id = 0; id < 2; ++id) {
+            turn_freely(types[alone.type[id]], integrator, kStep, alone.rotor[id],
+                        alone.angular_velocity[id]);
+            EXPECT_EQ(bodies.rotor[id], alone.rotor[id]) << i;
+            EXPECT_EQ(bodies.angular_velocity[id], alone.angular_velocity[id]) << i;
+        }
+    }
+}
+
 /// The largest relative changes of the four invariants over a million steps, 1/480 s in halves.
 void expect_invariants(const Vec4& sides, const Bivector& spin) {
     Bodies bodies;
