@@ -77,10 +77,11 @@ constexpr int kPushSweeps = 2;
 /// cost more.
 constexpr std::size_t kPushWork = 20000, kMostPushSweeps = 32;
 
-/// How many times the energy that a push has given to a body's turning may be taken back, usual 4.
-/// More, and thin bodies are thrown (without a bound one of 209 heaps wins 8 % of its energy); less,
-/// and what turns fast sinks in.
-constexpr double kGivenBack = 4;
+/// A push turns no body that would give back more than so many times the energy that it was given,
+/// usual 4, if that is more than this part of what it turns with, usual 1e-4. More, and thin bodies
+/// are thrown (without bounds one of 209 heaps wins 8 % of its energy); less of the second, and
+/// what spins fast sinks in.
+constexpr double kGivenBack = 4, kGivenBackOfTurning = 1e-4;
 
 /// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
 /// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.

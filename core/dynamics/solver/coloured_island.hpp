@@ -68,8 +68,8 @@ void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part)
 /// Whether any of the bodies whirls().
 bool any_whirls(const ColouredStage& stage, Range bodies);
 
-/// Keeps the changes of the load; leaves no other to bodies of which turns_push() says so; takes
-/// back what the push changed.
+/// Keeps the changes of the load; does not turn bodies of which turns_push() says so; takes back
+/// what the push changed.
 void begin_push(const ColouredStage& stage, Range bodies);
 void end_push(const ColouredStage& stage, Range bodies);
 void take_push_back(const ColouredStage& stage, Range bodies);

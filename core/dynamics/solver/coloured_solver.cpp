@@ -124,7 +124,7 @@ void end_push(const ColouredStage& stage, Range bodies) {
         const Bivector pushed = angular_change(change) - angular_change(before);
         const Bivector turning = stage.step.angular_velocity[id] + angular_change(change);
         if (!turns_push(stage.simulation, stage.step, id, turning, pushed)) continue;
-        change.velocity = before.velocity, change.first_planes = before.first_planes;
+        change.first_planes = before.first_planes;
         change.rest[0] = before.rest[0], change.rest[1] = before.rest[1];
     }
 }

@@ -54,6 +54,64 @@ double iterate_coloured(const ColouredIsland& island, Pass pass, const Effort& e
                    [&](Sweep sweep) { return sweep_coloured(island, sweep, threads, lanes); });
 }
 
+/// The rows of all contacts, and the impulses that they start from.
+template <class Threads>
+void start_coloured(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
+    const ColouredStage& stage = island.stage();
+    threads.for_bodies(island.bodies(), [&](Range bodies) { begin_changes(stage, bodies); });
+    island.for_colours(
+        threads, lanes, false,
+        [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
+            at_work.for_batches(batches.round, 1,
+                                [&](BatchRange piece) { start_round(stage, piece, at_once); });
+            at_work.for_batches(batches.general, kManifoldPoints,
+                                [&](BatchRange piece) { start_general(stage, piece, at_once); });
+        });
+}
+
+/// Of the impulses as they are, with the targets of a pass.
+inline double work_of_load(const ColouredIsland& island, Pass pass) {
+    const ColouredStage& stage = island.stage();
+    double work = 0;
+    for_all_rows(
+        island, OneThread{},
+        [&](BatchRange all) {
+            for (std::uint32_t i = all.begin; i < all.end; ++i)
+                work += load_work_of_round(stage, i, pass);
+        },
+        [&](BatchRange all) {
+            for (std::uint32_t i = all.begin; i < all.end; ++i)
+                work += load_work_of_general(stage, i, pass);
+        });
+    return stage.mass_unit * work;
+}
+/// Twice the kinetic energy of what they have changed [J].
+template <class Threads>
+double energy_of_load(const ColouredIsland& island, const Threads& threads) {
+    const std::span<BodySums> sums = island.body_sums();
+    for_pieces(threads, island.bodies(), [&](std::size_t place, Range bodies) {
+        sums[place][0] = energy_of_changes(island.stage(), bodies);
+    });
+    double energy = 0;
+    for (const BodySums& piece : sums) energy += piece[0];
+    return energy;
+}
+
+/// Whether a load leaves more energy than none would.
+template <class Threads>
+bool is_gain(const ColouredIsland& island, const Threads& threads) {
+    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
+    return load.is_gain(0);
+}
+
+/// Instead of a load that is a gain: the part of the last one that takes the most energy.
+template <class Threads>
+void leave_best_of_recalled(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
+    start_coloured(island, threads, lanes);
+    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
+    if (load.energy > 0) leave_part_of_load(island, threads, load.best_part());
+}
+
 /// A load by conjugate directions. It ends once neither a row's velocity nor, by the next step, a
 /// body's changes by more than the tolerance: what all of a wall does together no row sees.
 /// @return the residual of the last iteration [m/s]
@@ -80,23 +138,11 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
         const double left = std::max(residual, directions->find());
         if (i + 1 >= effort.least && left <= effort.enough) break;
     }
-    if (directions && residual > effort.enough) directions->end_gain();
+    if (directions && residual > effort.enough && directions->is_gain()) {
+        directions->take_back();
+        leave_best_of_recalled(island, threads, lanes);
+    }
     return residual;
-}
-
-/// The rows of all contacts, and the impulses that they start from.
-template <class Threads>
-void start_coloured(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
-    const ColouredStage& stage = island.stage();
-    threads.for_bodies(island.bodies(), [&](Range bodies) { begin_changes(stage, bodies); });
-    island.for_colours(
-        threads, lanes, false,
-        [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
-            at_work.for_batches(batches.round, 1,
-                                [&](BatchRange piece) { start_round(stage, piece, at_once); });
-            at_work.for_batches(batches.general, kManifoldPoints,
-                                [&](BatchRange piece) { start_general(stage, piece, at_once); });
-        });
 }
 
 /// What keep_round() and keep_general() keep of all contacts.
@@ -193,34 +239,6 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     keep_coloured(coloured, threads);
 }
 
-/// Of the impulses as they are, with the targets of a pass.
-inline double work_of_load(const ColouredIsland& island, Pass pass) {
-    const ColouredStage& stage = island.stage();
-    double work = 0;
-    for_all_rows(
-        island, OneThread{},
-        [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_round(stage, i, pass);
-        },
-        [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_general(stage, i, pass);
-        });
-    return stage.mass_unit * work;
-}
-/// Twice the kinetic energy of what they have changed [J].
-template <class Threads>
-double energy_of_load(const ColouredIsland& island, const Threads& threads) {
-    const std::span<BodySums> sums = island.body_sums();
-    for_pieces(threads, island.bodies(), [&](std::size_t place, Range bodies) {
-        sums[place][0] = energy_of_changes(island.stage(), bodies);
-    });
-    double energy = 0;
-    for (const BodySums& piece : sums) energy += piece[0];
-    return energy;
-}
-
 /// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
 /// @return whether they were
 template <class Threads>
@@ -245,20 +263,13 @@ void leave_recalled(const ColouredIsland& island, const Threads& threads) {
         leave_part_of_load(island, threads, load.best_part());
 }
 
-/// After sweeps of a load; see LoadWork::is_gain().
-template <class Threads>
-void end_gain(const ColouredIsland& island, const Threads& threads) {
-    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
-    if (load.is_gain(0)) leave_part_of_load(island, threads, load.best_part());
-}
-
 /// solve_island() of a coloured island.
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = LaneCount::kEight) {
     const bool impulse = simulation.settings.solver == Solver::kImpulse;
     hold_still(simulation, step, island);
-    step.pushed[island] = is_pushed(simulation, step, island);
+    if (is_pushed(simulation, step, island)) step.pushed[island] = Push::kAll;
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     start_coloured(coloured, threads, lanes);
@@ -268,10 +279,11 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     } else {
         if (impulse) leave_recalled(coloured, threads);
         step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
-        if (impulse && step.residual[island] > effort.enough) end_gain(coloured, threads);
+        if (impulse && step.residual[island] > effort.enough && is_gain(coloured, threads))
+            leave_best_of_recalled(coloured, threads, lanes);
     }
     if (impulse) keep_coloured(coloured, threads);
-    if (step.pushed[island]) {
+    if (step.pushed[island] != Push::kNone) {
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
         iterate_coloured(coloured, Pass::kPush,
                          effort_of_push(simulation, step.islands.contacts[island]), threads, lanes);
@@ -304,7 +316,7 @@ void relax_coloured_island(const Simulation& simulation, StepData& step, std::si
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
         keep_coloured(coloured, threads);
     }
-    if (step.pushed[island])
+    if (step.pushed[island] != Push::kNone)
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { take_push_back(stage, bodies); });
 }
 

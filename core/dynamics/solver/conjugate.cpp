@@ -211,21 +211,15 @@ void take_recalled(const ColouredStage& stage, Range bodies) {
     }
 }
 
-BodySums weigh_all(const ColouredStage& stage, Range bodies) {
-    const ColouredIslands& coloured = stage.step.coloured;
-    BodySums sums = {};
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-        sums[0] +=
-            2 * energy_of(coloured, i, load(coloured.changes[i]) + load(coloured.recalled[i]));
-    return sums;
-}
-
-void leave_part_of_all(const ColouredStage& stage, Range bodies, float part) {
-    ColouredIslands& coloured = stage.step.coloured;
+void take_recalled_back(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const Twelve recalled = load(coloured.recalled[i]);
-        const Twelve all = load(coloured.changes[i]) + recalled;
-        store(part * all - recalled, coloured.changes[i]);
+        const BodyId id = step.coloured.bodies[i];
+        const auto& [v, w, rest] = step.coloured.recalled[i];
+        step.velocity[id] -= Vec4(v[0], v[1], v[2], v[3]);
+        if (!stage.simulation.needs.turning) continue;
+        step.angular_velocity[id] =
+            step.angular_velocity[id] - Bivector{w[0], w[1], w[2], w[3], rest[0], rest[1]};
     }
 }
 

@@ -57,9 +57,8 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches);
 /// @return p.Ap and the largest square of a change of velocity
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried);
 
-/// Twice the kinetic energy of all that the load has changed, with what is recalled; a part of it.
-BodySums weigh_all(const ColouredStage& stage, Range bodies);
-void leave_part_of_all(const ColouredStage& stage, Range bodies, float part);
+/// From the velocities again.
+void take_recalled_back(const ColouredStage& stage, Range bodies);
 
 /// The beginning of the next pair.
 /// @param length   a

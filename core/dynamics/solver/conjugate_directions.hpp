@@ -64,17 +64,11 @@ class ConjugateDirections {
         for_bodies([](auto... of) { begin_directions(of...); });
     }
 
-    /// After the last pair: leaves the best part of impulses, recalled ones too, that are a gain.
-    void end_gain() {
-        const double gain = weigh()[2] + work()[1] - recalled_;
-        if (!(gain > 0)) return;
-        double twice_energy = 0;
-        for (const BodySums& piece : sums_of([](auto... of) { return weigh_all(of...); }))
-            twice_energy += piece[0];
-        const LoadWork load = {gain - 0.5 * twice_energy, twice_energy};
-        const auto left = static_cast<float>(load.best_part());
-        leave_part_of_rows(island_, threads_, left);
-        for_bodies([left](auto... of) { leave_part_of_all(of..., left); });
+    /// After the last pair: whether all impulses, recalled ones too, leave more energy than none.
+    bool is_gain() const { return weigh()[2] + work()[1] - recalled_ > 0; }
+    /// From what is recalled to no impulses.
+    void take_back() const {
+        for_bodies([](auto... of) { take_recalled_back(of...); });
     }
 
     // The rows' part of a pair, batch by batch as they are swept, while they are in the caches.

@@ -72,11 +72,13 @@ bool turns_push(const Simulation& simulation, const StepData& step, BodyId id,
                 const Bivector& turning, const Bivector& pushed) {
     const TypeProperties& type = simulation.type_of(id);
     if (type.isotropic || step.h * type.arm * norm(pushed) <= type.slop) return false;
-    const auto energy_at = [&](const Rotor& rotor) {
-        return dot(pushed, angular_momentum(type, rotor, pushed));
+    const auto energy = [&type](const Rotor& rotor, const Bivector& omega) {
+        return dot(omega, angular_momentum(type, rotor, omega));
     };
     const Rotor &now = step.rotor[id], then = exp(-0.25 * step.h * turning) * now;
-    return energy_at(then) > kGivenBack * energy_at(now);
+    const double given_back = energy(then, pushed);
+    return given_back > kGivenBack * energy(now, pushed) &&
+           given_back > kGivenBackOfTurning * energy(now, turning);
 }
 
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {

@@ -19,8 +19,8 @@ double least_response(const Simulation& simulation, BodyId a, BodyId b);
 bool whirls(const Simulation& simulation, const StepData& step, BodyId id);
 
 /// Whether a body turns in the rest of the sub-step so that what a push has changed of its turning
-/// has, when it is given back, more than kGivenBack times the energy: a needle that was rolled a
-/// little about its length would be thrown across it.
+/// has much more energy when it is given back, see kGivenBack: a needle that was rolled a little
+/// about its length would be thrown across it.
 /// @param turning   with the push [rad/s]
 bool turns_push(const Simulation& simulation, const StepData& step, BodyId id,
                 const Bivector& turning, const Bivector& pushed);

@@ -276,8 +276,28 @@ void keep_impulses(const Simulation& simulation, StepData& step, std::size_t isl
     });
 }
 
+/// Until this thread keeps others.
+std::span<const BodyMotion> keep_motions(const StepData& step, std::span<const BodyId> bodies) {
+    thread_local std::vector<BodyMotion> motions;
+    motions.clear();
+    for (const BodyId id : bodies) motions.push_back(motion_of(step, id));
+    return motions;
+}
+void restore_turning(StepData& step, std::span<const BodyId> bodies,
+                     std::span<const BodyMotion> motions) {
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        step.angular_velocity[bodies[i]] = motions[i].angular_velocity;
+}
+
 /// From the rows' impulses to those of the load.
 void take_push_back(const Simulation& simulation, StepData& step, std::size_t island) {
+    const bool straight = step.pushed[island] == Push::kStraight;
+    std::span<const BodyId> bodies;
+    std::span<const BodyMotion> before;
+    if (straight) {
+        bodies = bodies_of(simulation, step, island);
+        before = keep_motions(step, bodies);
+    }
     for_each_row(step, island, [&](const ContactRow& row, std::size_t contact) {
         const ContactImpulse& load = step.impulses[contact];
         const Vec4 back = (load.normal - row.normal_impulse) * row.normal +
@@ -291,6 +311,7 @@ void take_push_back(const Simulation& simulation, StepData& step, std::size_t is
                                   step.angular_impulses[contact] -
                                       angular_impulse_of(row, rolling_row_of(step, row)));
     });
+    if (straight) restore_turning(step, bodies, before);
 }
 
 /// The rows without their impulses and without friction.
@@ -304,22 +325,6 @@ void restart_without_friction(const Simulation& simulation, StepData& step, std:
         rolling.rolling.impulse.setZero(), rolling.twisting.impulse.setZero();
     }
     step.has_rows[island] = 0;  // they are no longer those of the contacts
-}
-
-/// Kept, and not won back from the impulses: what jams may leave the finite range. Until this
-/// thread keeps others.
-std::span<const BodyMotion> keep_motions(const StepData& step, std::span<const BodyId> bodies) {
-    thread_local std::vector<BodyMotion> motions;
-    motions.clear();
-    for (const BodyId id : bodies) motions.push_back(motion_of(step, id));
-    return motions;
-}
-void restore_motions(StepData& step, std::span<const BodyId> bodies,
-                     std::span<const BodyMotion> motions) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        step.velocity[bodies[i]] = motions[i].velocity;
-        step.angular_velocity[bodies[i]] = motions[i].angular_velocity;
-    }
 }
 
 /// The first part of a blow; see can_jam().
@@ -337,16 +342,20 @@ void compress(const Simulation& simulation, StepData& step, std::size_t island, 
             sum += twice_kinetic_energy(simulation, step, id, motion_of(step, id));
         return sum;
     };
+    // Not won back from the impulses: what jams may leave the finite range.
     const std::span<const BodyMotion> before = keep_motions(step, bodies);
     const double energy_before = energy();
     run_pass(simulation, step, rows, Pass::kSolve, effort);
     if (!has_jammed(energy_before, energy())) return;
-    restore_motions(step, bodies, before);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        step.velocity[bodies[i]] = before[i].velocity;
+        step.angular_velocity[bodies[i]] = before[i].angular_velocity;
+    }
     restart_without_friction(simulation, step, island);
     run_pass(simulation, step, rows, Pass::kSolve, effort);
 }
 
-/// After the load; none at all where turns_push() says so of any body.
+/// After the load; nothing is turned where turns_push() says so of any body.
 void push(const Simulation& simulation, StepData& step, std::size_t island) {
     const std::span<ContactRow> rows = rows_of(step, island);
     const std::span<const BodyId> bodies = bodies_of(simulation, step, island);
@@ -359,8 +368,8 @@ void push(const Simulation& simulation, StepData& step, std::size_t island) {
             turns_push(simulation, step, bodies[i], turning, turning - before[i].angular_velocity);
     }
     if (!turns) return;
-    restore_motions(step, bodies, before);
-    step.pushed[island] = 0;
+    restore_turning(step, bodies, before);
+    step.pushed[island] = Push::kStraight;
 }
 
 }  // namespace
@@ -392,14 +401,14 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     if (step.islands.is_coloured(island))
         return solve_coloured_island(simulation, step, island, OneThread{});
     hold_still(simulation, step, island);
-    step.pushed[island] = is_pushed(simulation, step, island);
+    if (is_pushed(simulation, step, island)) step.pushed[island] = Push::kAll;
     start_rows(simulation, step, island, Cause::kLoad);
     const std::span<ContactRow> rows = rows_of(step, island);
     apply_recalled(simulation, step, island);
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, step, island));
     if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
-    if (step.pushed[island]) push(simulation, step, island);
+    if (step.pushed[island] != Push::kNone) push(simulation, step, island);
 }
 
 void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
@@ -416,7 +425,7 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
         if (!whirls && end_gain(simulation, step, island)) step.residual[island] = relax();
         keep_impulses(simulation, step, island);
     }
-    if (step.pushed[island]) take_push_back(simulation, step, island);
+    if (step.pushed[island] != Push::kNone) take_push_back(simulation, step, island);
 }
 
 }  // namespace tesserae

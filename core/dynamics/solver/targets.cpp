@@ -83,7 +83,7 @@ Parting Parting::at(const StepData& step, Range contacts) const {
 }
 
 Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island) {
-    return {step.pushed[island] != 0,
+    return {step.pushed[island] != Push::kNone,
             step.islands.falling_mass[island] * (step.h * simulation.settings.gravity.norm())};
 }
 

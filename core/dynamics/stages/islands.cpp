@@ -22,7 +22,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     step.residual.resize(islands.size());
     step.has_rows.assign(islands.size(), 0);
     step.was_hit.assign(islands.size(), 0);
-    step.pushed.assign(islands.size(), 0);
+    step.pushed.assign(islands.size(), Push::kNone);
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);

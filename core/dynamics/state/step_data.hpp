@@ -124,6 +124,9 @@ struct BodyMotion {
     }
 };
 
+/// What takes an island's overlap away after its load: kStraight turns no body.
+enum class Push : std::uint8_t { kNone, kAll, kStraight };
+
 /// Of a body before a blow and at its greatest compression.
 struct BlowMotion {
     BodyMotion before, compressed;
@@ -170,7 +173,7 @@ struct StepData {
     /// Of `impulses` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
-    std::vector<std::uint8_t> pushed;            ///< of every island: see is_pushed()
+    std::vector<Push> pushed;                    ///< of every island: see is_pushed()
     std::vector<double> residual;                ///< of every island [m/s]
     std::vector<BodyId> asleep;                  ///< as in StepMemory, as of now
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts

@@ -282,7 +282,7 @@ TEST(ColouredSolver, SolvesAPairAsTheOneByOneSolverDoes) {
             const double several = jams ? 0.6 : 0.1;
             // A push of four sweeps has not ended; while bodies move with it they turn on
             // otherwise, by half a step times the square of a push of 0.5 rad/s (measured: 2.5e-4).
-            const bool pushed = !single && plain.pushed[0] != 0;
+            const bool pushed = !single && plain.pushed[0] != Push::kNone;
             const double most = !hit            ? (carried  ? 1e-2
                                                    : pushed ? 5e-4
                                                    : jams   ? 4e-5
