@@ -57,6 +57,8 @@ void keep_blow_motion(const ColouredStage& stage, Range bodies);
 std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
+/// Takes from them what was recalled, see take_recalled().
+void take_recalled_back(const ColouredStage& stage, Range bodies);
 /// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
 /// velocity, as if by an impulse, which ColouredIslands::angular_velocity then has.
 void take_changes_back(const ColouredStage& stage, Range bodies);
@@ -135,21 +137,16 @@ void for_all_rows(const ColouredIsland& island, const Threads& threads, const Ro
                        });
 }
 
-/// Of the rows' impulses.
-template <class Threads>
-void leave_part_of_rows(const ColouredIsland& island, const Threads& threads, float part) {
-    const ColouredStage& stage = island.stage();
-    for_all_rows(
-        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, part); },
-        [&](BatchRange some) { leave_part_of_general(stage, some, part); });
-}
 /// Of the impulses, and of what they have changed.
 template <class Threads>
 void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
+    const ColouredStage& stage = island.stage();
     const auto left = static_cast<float>(part);
-    leave_part_of_rows(island, threads, left);
+    for_all_rows(
+        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, left); },
+        [&](BatchRange some) { leave_part_of_general(stage, some, left); });
     threads.for_bodies(island.bodies(),
-                       [&](Range bodies) { leave_part_of_changes(island.stage(), bodies, left); });
+                       [&](Range bodies) { leave_part_of_changes(stage, bodies, left); });
 }
 
 }  // namespace tesserae

@@ -99,6 +99,17 @@ void add_changes(const ColouredStage& stage, Range bodies) {
     }
 }
 
+void take_recalled_back(const ColouredStage& stage, Range bodies) {
+    StepData& step = stage.step;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        const PackedChange& recalled = step.coloured.recalled[i];
+        step.velocity[id] -= velocity_change(recalled);
+        if (stage.simulation.needs.turning)
+            step.angular_velocity[id] = step.angular_velocity[id] - angular_change(recalled);
+    }
+}
+
 bool any_whirls(const ColouredStage& stage, Range bodies) {
     const BodyId* const ids = stage.step.coloured.bodies.data();
     return std::any_of(ids + bodies.begin, ids + bodies.end,

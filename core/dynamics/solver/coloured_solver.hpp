@@ -97,18 +97,16 @@ double energy_of_load(const ColouredIsland& island, const Threads& threads) {
     return energy;
 }
 
-/// Whether a load leaves more energy than none would.
 template <class Threads>
-bool is_gain(const ColouredIsland& island, const Threads& threads) {
-    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
-    return load.is_gain(0);
+LoadWork load_of(const ColouredIsland& island, const Threads& threads, Pass pass) {
+    return {work_of_load(island, pass), energy_of_load(island, threads)};
 }
 
 /// Instead of a load that is a gain: the part of the last one that takes the most energy.
 template <class Threads>
 void leave_best_of_recalled(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
     start_coloured(island, threads, lanes);
-    const LoadWork load = {work_of_load(island, Pass::kSolve), energy_of_load(island, threads)};
+    const LoadWork load = load_of(island, threads, Pass::kSolve);
     if (load.energy > 0) leave_part_of_load(island, threads, load.best_part());
 }
 
@@ -244,7 +242,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
 template <class Threads>
 bool end_gain(const ColouredIsland& island, const Threads& threads, const Overlap& overlap) {
     if (!overlap.any) return false;
-    const LoadWork load = {work_of_load(island, Pass::kRelax), energy_of_load(island, threads)};
+    const LoadWork load = load_of(island, threads, Pass::kRelax);
     if (!load.is_gain(overlap.weight)) return false;
     leave_part_of_load(island, threads, load.best_part());
     return true;
@@ -279,7 +277,8 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     } else {
         if (impulse) leave_recalled(coloured, threads);
         step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
-        if (impulse && step.residual[island] > effort.enough && is_gain(coloured, threads))
+        if (impulse && step.residual[island] > effort.enough &&
+            load_of(coloured, threads, Pass::kSolve).is_gain(0))
             leave_best_of_recalled(coloured, threads, lanes);
     }
     if (impulse) keep_coloured(coloured, threads);

@@ -211,18 +211,6 @@ void take_recalled(const ColouredStage& stage, Range bodies) {
     }
 }
 
-void take_recalled_back(const ColouredStage& stage, Range bodies) {
-    StepData& step = stage.step;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = step.coloured.bodies[i];
-        const auto& [v, w, rest] = step.coloured.recalled[i];
-        step.velocity[id] -= Vec4(v[0], v[1], v[2], v[3]);
-        if (!stage.simulation.needs.turning) continue;
-        step.angular_velocity[id] =
-            step.angular_velocity[id] - Bivector{w[0], w[1], w[2], w[3], rest[0], rest[1]};
-    }
-}
-
 void begin_directions(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {

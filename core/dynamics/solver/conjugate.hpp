@@ -57,9 +57,6 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches);
 /// @return p.Ap and the largest square of a change of velocity
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried);
 
-/// From the velocities again.
-void take_recalled_back(const ColouredStage& stage, Range bodies);
-
 /// The beginning of the next pair.
 /// @param length   a
 void go_along(const ColouredStage& stage, Range bodies, float length);

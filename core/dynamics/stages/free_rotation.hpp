@@ -19,12 +19,12 @@ namespace tesserae {
 void turn_freely(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
                  Bivector& omega);
 
-/// The same of two bodies, to the bit, in less time.
 struct FreeBody {
     const TypeProperties& type;
     Rotor& rotor;
     Bivector& omega;
 };
+/// The same of two bodies, to the bit, in less time.
 void turn_freely(const FreeBody& a, const FreeBody& b, RotationIntegrator integrator, double h);
 
 }  // namespace tesserae

@@ -23,8 +23,6 @@ bool turns(const BodyType& type, const Bivector& turning, const Bivector& pushed
     StepData step;
     begin_step(simulation, step, kStep);
     advance_first_half(simulation, step, {0, 1});
-    begin_step(simulation, step, kStep);
-    advance_first_half(simulation, step, {0, 1});
     return turns_push(simulation, step, 0, rotate(rotor, turning), rotate(rotor, pushed));
 }
 
