@@ -22,6 +22,8 @@ constexpr std::size_t kLanes = 8;
 
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
+/// Two Float8, where the CPU has AVX-512.
+using Float16 = float __attribute__((vector_size(2 * kLanes * sizeof(float))));
 using Unsigned4 = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
 using Half8 = std::uint16_t __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
 using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
@@ -219,5 +221,33 @@ inline constexpr auto kLanesSet = [] {
     std::memcpy(to, set, sizeof set);
 #endif
 }
+
+#ifdef __AVX512F__
+// ---- sixteen lanes ----
+template <>
+[[gnu::always_inline]] inline Float16 larger(Float16 a, Float16 b) {
+    return _mm512_max_ps(a, b);
+}
+[[gnu::always_inline]] inline Float16 square_root(Float16 x) { return _mm512_sqrt_ps(x); }
+[[gnu::always_inline]] inline Float16 fused(Float16 a, Float16 b, Float16 c) {
+    return _mm512_fmadd_ps(a, b, c);
+}
+[[gnu::always_inline]] inline Float16 both(Float8 low, Float8 high) {
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+}
+[[gnu::always_inline]] inline Float8 low_half(Float16 x) { return _mm512_castps512_ps256(x); }
+[[gnu::always_inline]] inline Float8 high_half(Float16 x) { return _mm512_extractf32x8_ps(x, 1); }
+[[gnu::always_inline]] inline Float16 from_halves(Half8 low, Half8 high) {
+    const __m256i halves = _mm256_inserti128_si256(_mm256_castsi128_si256(same_bits<__m128i>(low)),
+                                                   same_bits<__m128i>(high), 1);
+    return same_bits<Float16>(_mm512_slli_epi32(_mm512_cvtepu16_epi32(halves), 16));
+}
+[[gnu::always_inline]] inline float largest_lane(Float16 x) {
+    return largest_lane(larger(low_half(x), high_half(x)));
+}
+[[gnu::always_inline]] inline bool nowhere_above(Float16 a, Float16 b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ) == 0xffff;
+}
+#endif
 
 }  // namespace tesserae::simd

@@ -1,13 +1,39 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "core/dynamics/solver/sweep.hpp"
 #include "core/dynamics/solver/targets.hpp"
 
 namespace tesserae {
 
-/// How many lanes of a batch are worked on at a time: the results are the same bits. Batches whose
-/// pairs share movable bodies need kOne, which goes through the lanes in order.
-enum class LaneCount { kOne, kEight };
+/// How many lanes are worked on at a time: the results are the same bits. Batches whose pairs share
+/// movable bodies need kOne, which goes through the lanes in order. kSixteen, where the CPU has it,
+/// sweeps two batches at once: a sweep waits for one operation after the other, not for their
+/// number.
+enum class LaneCount { kOne, kEight, kSixteen };
+/// The most that this CPU has.
+LaneCount most_lanes();
+
+/// Calls work(BatchRange) for all batches in the order of a sweep: for two neighbours that have as
+/// many rows at once, else for one.
+/// @return the largest that it returns, at least 0
+template <class Work>
+double largest_of_twos(const std::vector<Batch>& all, BatchRange batches, bool backward,
+                       const Work& work) {
+    double largest = 0;
+    auto [begin, end] = batches;
+    while (begin < end) {
+        const std::uint32_t two = backward ? end - 1 : begin + 1;  // the second of two
+        const bool at_once = end - begin > 1 && all[two - 1].rows == all[two].rows;
+        const BatchRange some =
+            backward ? BatchRange{end - 1 - at_once, end} : BatchRange{begin, begin + 1 + at_once};
+        largest = std::max<double>(largest, work(some));
+        (backward ? end : begin) = backward ? some.begin : some.end;
+    }
+    return largest;
+}
 
 /// Without the entries that are specks beside the diagonal, see kSpeck.
 inline BivectorMap without_specks(const BivectorMap& map) {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/dynamics/solver/coloured_place.hpp"
-#include "core/dynamics/solver/coloured_points.hpp"
+#include "core/dynamics/solver/coloured_row.hpp"
 
 // The normal impulses of a pair that is not round, on all of its points in turn. Each changes the
 // normal velocities of the others by their point responses: so much shorter a way from one to the
@@ -22,10 +22,12 @@ class PairNormals {
                                        const Batch& batch, Pass pass,
                                        const std::array<F, 4>& motion)
         : lane_(lane),
+          lanes_{lane.template in_row<GeneralRow>(), lane.template in_row<Eight>()},
           rows_(&coloured.rows[batch.row]),
           keep_(pass == Pass::kSolve ? keep_from(coloured.relax, batch.row) : nullptr),
           impulses_(&coloured.impulses.normal[batch.row]),
-          response_(first_of<kResponses>(lane, &coloured.point_response[batch.response])),
+          response_(
+              first_of<kResponses>(lane.in_responses(), &coloured.point_response[batch.response])),
           count_(batch.rows),
           change_{} {
         see(&coloured.relax.target[batch.row], pass, motion, All());
@@ -48,7 +50,7 @@ class PairNormals {
     template <std::size_t... k>
     [[gnu::always_inline]] void see(const Eight* relax_targets, Pass pass,
                                     const std::array<F, 4>& motion, std::index_sequence<k...>) {
-        ((left_[k] = k < count_ ? target_of(lane_, rows_[k].along, relax_targets[k], pass) -
+        ((left_[k] = k < count_ ? target_of(lanes_, rows_[k].along, relax_targets[k], pass) -
                                       along_at(place_of(lane_, rows_[k]), motion)
                                 : F{}),
          ...);
@@ -63,7 +65,7 @@ class PairNormals {
     template <std::size_t k, bool kBackward, bool kFirst, std::size_t... j>
     [[gnu::always_inline]] void solve_point(bool measured, F& left, std::index_sequence<j...>) {
         if (k >= count_) return;
-        const F change = solve_normal(lane_, rows_[k].along, keep_ ? keep_ + k : nullptr, left_[k],
+        const F change = solve_normal(lanes_, rows_[k].along, keep_ ? keep_ + k : nullptr, left_[k],
                                       impulses_[k]);
         change_[k] += change;
         ((kFirst || (kBackward ? j < k : j > k)
@@ -88,6 +90,7 @@ class PairNormals {
     }
 
     const Lane<F>& lane_;
+    const NormalLanes<F> lanes_;
     const GeneralRow* const rows_;
     const Eight* const keep_;
     Eight* const impulses_;

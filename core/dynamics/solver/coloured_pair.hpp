@@ -39,7 +39,7 @@ template <class F>
 class Inverse<F, true> {
   public:
     [[gnu::always_inline]] Inverse(const Lane<F>& lane, const LaneInertia* inertia, F)
-        : lane_(lane), inertia_(*inertia) {}
+        : lane_(lane.template in_batch<PairInertia>()), inertia_(*inertia) {}
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& m) const {
         const auto e = [&](std::size_t i) { return lane_.load(inertia_[i]); };
         const auto row = [&](int i0, int i1, int i2, int i3, int i4, int i5) {
@@ -56,7 +56,7 @@ class Inverse<F, true> {
     }
 
   private:
-    const Lane<F>& lane_;
+    const Lane<F> lane_;
     const LaneInertia& inertia_;
 };
 
@@ -155,8 +155,12 @@ class LanePair {
         bodies_b_.template store<true>(b_);
     }
 
-    [[gnu::always_inline]] LaneVec4<F> centre_a() const { return load(lane_, frame_.centre_a); }
-    [[gnu::always_inline]] LaneVec4<F> centre_b() const { return load(lane_, frame_.centre_b); }
+    [[gnu::always_inline]] LaneVec4<F> centre_a() const {
+        return load(lane_.template in_batch<PairFrame>(), frame_.centre_a);
+    }
+    [[gnu::always_inline]] LaneVec4<F> centre_b() const {
+        return load(lane_.template in_batch<PairFrame>(), frame_.centre_b);
+    }
     [[gnu::always_inline]] Inverse<F, kUneven> inverse_a() const {
         return {lane_, kUneven ? &inertia_->a : nullptr, a_.inverse_inertia};
     }

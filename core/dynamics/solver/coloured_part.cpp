@@ -8,6 +8,7 @@ namespace {
 
 using namespace lanes;
 constexpr Lane<Float8> kEvery;
+constexpr NormalLanes<Float8> kRows;
 
 double sum_of(Float8 x) {
     double sum = 0;
@@ -33,7 +34,7 @@ void scale(std::array<Eight, kSize>& all, float by) {
 double load_work_of_round(const ColouredStage& stage, std::uint32_t batch, Pass pass) {
     const ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
-    Float8 work = -kEvery.load(normal[batch]) * target_of(kEvery, coloured.round_rows[batch].along,
+    Float8 work = -kEvery.load(normal[batch]) * target_of(kRows, coloured.round_rows[batch].along,
                                                           coloured.round_relax.target[batch], pass);
     if (coloured.friction)
         work += product(load_all(kEvery, coloured.round_friction[batch].slip), tangent[batch]);
@@ -54,7 +55,7 @@ double load_work_of_general(const ColouredStage& stage, std::uint32_t index, Pas
     Float8 work{};
     for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
         const Place<Float8> at = place_of(kEvery, coloured.rows[row]);
-        const Float8 velocity = along_at(at, along) - target_of(kEvery, coloured.rows[row].along,
+        const Float8 velocity = along_at(at, along) - target_of(kRows, coloured.rows[row].along,
                                                                 coloured.relax.target[row], pass);
         work = fused(kEvery.load(coloured.impulses.normal[row]), velocity, work);
         if (coloured.friction) {

@@ -13,7 +13,8 @@ using Place = std::array<F, 3>;
 
 template <class F>
 [[gnu::always_inline]] inline Place<F> place_of(const Lane<F>& lane, const GeneralRow& row) {
-    return {lane.load(row.at[0]), lane.load(row.at[1]), lane.load(row.at[2])};
+    const auto& in = lane.template in_row<GeneralRow>();
+    return {in.load(row.at[0]), in.load(row.at[1]), in.load(row.at[2])};
 }
 /// The velocity along the normal at a place.
 template <class F>
@@ -82,22 +83,22 @@ template <class F, std::size_t kSize>
     return of;
 }
 
-/// Calls use(AcrossResponse<...>&) with that of a batch.
-template <class Use>
-[[gnu::always_inline]] inline void with_response(ColouredIslands& coloured, std::uint32_t index,
-                                                 const Use& use) {
+/// Calls use(lane, AcrossResponse<...>&) with that of a batch.
+template <class F, class Use>
+[[gnu::always_inline]] inline void with_response(const Lane<F>& lane, ColouredIslands& coloured,
+                                                 std::uint32_t index, const Use& use) {
     if (coloured.slender)
-        use(coloured.slender_response[index]);
+        use(lane.template in_batch<AcrossResponse<Eight>>(), coloured.slender_response[index]);
     else
-        use(coloured.pair_friction[index].response);
+        use(lane.template in_batch<PairFriction>(), coloured.pair_friction[index].response);
 }
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 21> across_response(const Lane<F>& lane,
                                                                 ColouredIslands& coloured,
                                                                 std::uint32_t index) {
     std::array<F, 21> x;
-    with_response(coloured, index,
-                  [&](const auto& response) { x = load_all(lane, response.across); });
+    with_response(lane, coloured, index,
+                  [&](const auto& in, const auto& response) { x = load_all(in, response.across); });
     return x;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/dynamics/solver/coloured_kernels.hpp"
+#include "core/dynamics/solver/coloured_row.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/solver/lanes.hpp"
 #include "core/dynamics/solver/rolling_row.hpp"
@@ -174,85 +175,17 @@ template <class F>
     return v;
 }
 
-/// @param keep       NormalPass::keep; 0 of points that a lane does not have, which keep nothing
-/// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
-template <class F>
-[[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F keep, F response, F least,
-                                               NormalRow& row) {
-    const F inverse = (F{} + 1.0f) / response;
-    lane.store(response > least ? (keep > F{} ? inverse : F{}) : F{}, row.mass);
-}
-/// @param fours   target, relax target, keep, normal impulse
-/// @param place   in `relax` and `impulses`
-/// @return the impulse to start from
-template <class F>
-[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
-                                             std::size_t place, NormalRow& row, NormalRelax& relax,
-                                             std::vector<Eight>& impulses) {
-    lane.store(fours[0], row.target);
-    lane.store(fours[1], relax.target[place]);
-    if (!relax.keep.empty()) lane.store(fours[2], relax.keep[place]);
-    lane.store(fours[3], impulses[place]);
-    return fours[3];
-}
-/// NormalPass::keep of a row and those behind it; null where contacts are rigid.
-inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
-    return relax.keep.empty() ? nullptr : &relax.keep[place];
-}
-
-/// The normal velocity that a pass aims at, less that of the start.
-template <class F>
-[[gnu::always_inline]] inline F target_of(const Lane<F>& lane, const NormalRow& row,
-                                          const Eight& relax_target, Pass pass) {
-    return lane.load(pass == Pass::kSolve ? row.target : relax_target);
-}
-/// One step of a normal impulse.
-/// @param keep   as of keep_from(); null in passes that need none
-/// @param left   of its target, less the change of the normal velocity
-/// @return its change
-template <class F>
-[[gnu::always_inline]] inline F solve_normal(const Lane<F>& lane, const NormalRow& row,
-                                             const Eight* keep, F left, Eight& impulse) {
-    const F old = lane.load(impulse);
-    F change = lane.load(row.mass) * left;
-    if (keep) change = lane.load(*keep) * (old + change) - old;
-    change = larger(change, -old);  // sooner there than by the impulse
-    lane.store(old + change, impulse);
-    return change;
-}
-
-/// The nearest of length at most `most`; zero stays zero.
-template <class F, template <class> class Impulse>
-[[gnu::always_inline]] inline Impulse<F> clamped(const Impulse<F>& impulse, F most) {
-    const F squared = dot(impulse, impulse);
-    const F scale = squared > most * most ? most / square_root(squared) : F{} + 1.0f;
-    return scale * impulse;
-}
-
-/// A change over the mass that it moves: what was left to solve [m/s].
-template <class F>
-[[gnu::always_inline]] inline F velocity_left(const Lane<F>& lane, const NormalRow& row, F change) {
-    const F mass = lane.load(row.mass);
-    return mass > F{} ? magnitude(change) / mass : F{};
-}
-/// Its square.
-template <class F>
-[[gnu::always_inline]] inline F squared_velocity_left(F mass, const LaneVec4<F>& change) {
-    const LaneVec4<F> left = (mass > F{} ? (F{} + 1.0f) / mass : F{}) * change;
-    return dot(left, left);
-}
-
 /// Calls work(Lane<F>, batch) for all lanes of the batches.
 template <class Work>
 void for_lanes(BatchRange batches, LaneCount lanes, bool backward, const Work& work) {
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const std::uint32_t batch = backward ? batches.begin + (batches.end - 1 - i) : i;
-        if (lanes == LaneCount::kEight) {
+        if (lanes != LaneCount::kOne) {
             work(Lane<Float8>{}, batch);
             continue;
         }
         for (std::size_t k = 0; k < kLanes; ++k)
-            work(Lane<float>{backward ? kLanes - 1 - k : k}, batch);
+            work(Lane<float>(backward ? kLanes - 1 - k : k), batch);
     }
 }
 

@@ -1,33 +1,11 @@
 #include "core/dynamics/solver/coloured_points.hpp"
+#include "core/dynamics/solver/coloured_round_sweep.hpp"
+#include "core/dynamics/solver/coloured_sixteen.hpp"
 
 namespace tesserae {
 namespace {
 
 using namespace lanes;
-
-template <class F>
-[[gnu::always_inline]] inline void apply(const LaneVec4<F>& impulse, Motion<F>& a, Motion<F>& b) {
-    a.velocity = sum(a.velocity, -a.inverse_mass, impulse);
-    b.velocity = sum(b.velocity, b.inverse_mass, impulse);
-}
-
-/// A tangent impulse also turns the bodies, whose offsets are arm_a n and -arm_b n.
-template <class F>
-[[gnu::always_inline]] inline void turn(const LaneVec4<F>& n, const LaneVec4<F>& tangent, F arm_a,
-                                        F arm_b, Motion<F>& a, Motion<F>& b) {
-    const LaneBivector<F> moment = wedge(n, tangent);
-    a.angular_velocity = a.angular_velocity - (a.inverse_inertia * arm_a) * moment;
-    b.angular_velocity = b.angular_velocity - (b.inverse_inertia * arm_b) * moment;
-}
-
-/// An angular impulse, of which rolling and twisting may each have so much.
-template <class F>
-[[gnu::always_inline]] inline LaneBivector<F> clamped_parts(const LaneVec4<F>& n,
-                                                            const LaneBivector<F>& impulse,
-                                                            F most) {
-    const LaneBivector<F> rolling = wedge(n, velocity_at(impulse, n));
-    return clamped<F>(rolling, most) + clamped<F>(impulse - rolling, most);
-}
 
 template <class F>
 [[gnu::always_inline]] inline void start_rolling(const Lane<F>& lane, const LaneVec4<F>& n,
@@ -40,23 +18,6 @@ template <class F>
     store(lane, impulse, rolling.impulse);
     a.angular_velocity = a.angular_velocity - a.inverse_inertia * impulse;
     b.angular_velocity = b.angular_velocity + b.inverse_inertia * impulse;
-}
-
-/// solve_rolling_row(): the response is the same about every plane, so that both parts can be
-/// taken at once and each from the impulse that ends its turning, clamped.
-template <class F>
-[[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const LaneVec4<F>& n,
-                                                 F normal_impulse, RoundRolling& rolling,
-                                                 Motion<F>& a, Motion<F>& b) {
-    const LaneBivector<F> turning =
-        load(lane, rolling.turning) + (b.angular_velocity - a.angular_velocity);
-    const LaneBivector<F> old = load(lane, rolling.impulse);
-    const LaneBivector<F> impulse = clamped_parts(n, old - lane.load(rolling.mass) * turning,
-                                                  lane.load(rolling.arm) * normal_impulse);
-    store(lane, impulse, rolling.impulse);
-    const LaneBivector<F> change = impulse - old;
-    a.angular_velocity = a.angular_velocity - a.inverse_inertia * change;
-    b.angular_velocity = b.angular_velocity + b.inverse_inertia * change;
 }
 
 template <bool kFriction, bool kRolling, class F>
@@ -100,67 +61,6 @@ template <bool kFriction, bool kRolling, class F>
     bodies_b.template store<kFriction>(b);
 }
 
-/// What the bodies' changes are of the slip.
-/// @param v, along   of b against a, and along the normal
-template <class F>
-[[gnu::always_inline]] inline LaneVec4<F> slip_of(const Lane<F>& lane, const LaneVec4<F>& n,
-                                                  const LaneVec4<F>& v, F along,
-                                                  const RoundFriction& friction, const Motion<F>& a,
-                                                  const Motion<F>& b) {
-    const LaneBivector<F> w = lane.load(friction.arm_a) * a.angular_velocity +
-                              lane.load(friction.arm_b) * b.angular_velocity;
-    return sum(v, -along, n) - velocity_at(w, n);
-}
-
-/// The normal first and then friction, as solve_row() does: the response is the same along every
-/// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
-/// Neither changes what the other sees, so that without rolling this is its own adjoint.
-template <bool kFriction, bool kRolling, class F>
-[[gnu::always_inline]] inline F solve_batch(const ColouredStage& stage, const Lane<F>& lane,
-                                            std::uint32_t batch, Sweep sweep) {
-    ColouredIslands& coloured = stage.step.coloured;
-    LaneBodies<F> bodies_a(lane, coloured.changes.data(), coloured.round[batch].a);
-    LaneBodies<F> bodies_b(lane, coloured.changes.data(), coloured.round[batch].b);
-    Motion<F> a = bodies_a.template load<kFriction>(), b = bodies_b.template load<kFriction>();
-    const RoundRow& row = coloured.round_rows[batch];
-    const LaneVec4<F> n = load(lane, row.normal);
-
-    const LaneVec4<F> v = b.velocity - a.velocity;
-    const F along = dot(n, v);
-    Eight& impulse = coloured.round_impulses.normal[batch];
-    const bool solves = sweep.pass == Pass::kSolve;
-    const F target = target_of(lane, row.along, coloured.round_relax.target[batch], sweep.pass);
-    const F change =
-        solve_normal(lane, row.along, solves ? keep_from(coloured.round_relax, batch) : nullptr,
-                     target - along, impulse);
-    const F normal_impulse = lane.load(impulse);
-    LaneVec4<F> tangent_change{};
-    if constexpr (kFriction) {
-        const RoundFriction& friction = coloured.round_friction[batch];
-        std::array<Eight, 4>& tangents = coloured.round_impulses.tangent[batch];
-        const F arm_a = lane.load(friction.arm_a), arm_b = lane.load(friction.arm_b);
-        const LaneVec4<F> slip =
-            load(lane, friction.slip) + slip_of(lane, n, v, along, friction, a, b);
-        const LaneVec4<F> old = load(lane, tangents);
-        const LaneVec4<F> tangent = clamped<F>(sum(old, -lane.load(friction.mass), slip),
-                                               lane.load(friction.friction) * normal_impulse);
-        store(lane, tangent, tangents);
-        tangent_change = tangent - old;
-        turn(n, tangent_change, arm_a, arm_b, a, b);
-    }
-    if constexpr (kRolling)
-        solve_rolling(lane, n, normal_impulse, coloured.round_rolling[batch], a, b);
-    apply(sum(tangent_change, change, n), a, b);
-    bodies_a.template store<kFriction>(a);
-    bodies_b.template store<kFriction>(b);
-    if (!sweep.measured) return F{};
-    F left = velocity_left(lane, row.along, change);
-    if constexpr (kFriction)
-        left = larger(left, square_root(squared_velocity_left(
-                                lane.load(coloured.round_friction[batch].mass), tangent_change)));
-    return left;
-}
-
 template <bool kFriction, bool kRolling>
 void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
     ColouredIslands& coloured = stage.step.coloured;
@@ -187,16 +87,6 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
     }
 }
 
-template <bool kFriction, bool kRolling>
-double sweep_all(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
-    float most = 0;
-    for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
-        const auto left = solve_batch<kFriction, kRolling>(stage, lane, batch, sweep);
-        if (sweep.measured) most = std::max(most, largest_lane(left));
-    });
-    return most;
-}
-
 }  // namespace
 
 void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
@@ -207,11 +97,20 @@ void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes
 }
 
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
-    const ColouredIslands& coloured = stage.step.coloured;
-    const bool pushes = sweep.pass == Pass::kPush;
-    if (coloured.rolling && !pushes) return sweep_all<true, true>(stage, batches, sweep, lanes);
-    return coloured.friction && !pushes ? sweep_all<true, false>(stage, batches, sweep, lanes)
-                                        : sweep_all<false, false>(stage, batches, sweep, lanes);
+    ColouredIslands& coloured = stage.step.coloured;
+    const auto sweep_all = [&](auto friction, auto rolling) {
+        float most = 0;
+        for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
+            const auto left = solve_batch<friction(), rolling()>(coloured, lane, batch, sweep);
+            if (sweep.measured) most = std::max(most, largest_lane(left));
+        });
+        return most;
+    };
+    if (lanes != LaneCount::kSixteen) return with_kind_of_round(coloured, sweep.pass, sweep_all);
+    return largest_of_twos(coloured.round, batches, sweep.backward, [&](BatchRange some) {
+        return some.end - some.begin == 2 ? sixteen::sweep_round(coloured, some.begin, sweep)
+                                          : sweep_round(stage, some, sweep, LaneCount::kEight);
+    });
 }
 
 void take_recalled_round(const ColouredStage& stage, BatchRange batches) {

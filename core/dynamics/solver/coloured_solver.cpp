@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/dynamics/solver/coloured_sixteen.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 
 namespace tesserae {
@@ -43,7 +44,22 @@ InverseInertia packed(const BivectorMap& map, double factor) {
     return inertia;
 }
 
+bool has_sixteen_lanes() {
+#ifdef __x86_64__
+    return sixteen::kCompiled && __builtin_cpu_supports("avx512f") &&
+           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+#else
+    return false;
+#endif
+}
+
 }  // namespace
+
+LaneCount most_lanes() {
+    static const LaneCount most = has_sixteen_lanes() ? LaneCount::kSixteen : LaneCount::kEight;
+    return most;
+}
 
 void begin_changes(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;

@@ -211,7 +211,7 @@ void limit_restitution(const ColouredIsland& island, const Blow& blow, const Thr
 /// solve_blow() of a coloured island.
 template <class Threads>
 void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island,
-                         const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+                         const Threads& threads, LaneCount lanes = most_lanes()) {
     const Blow blow = blow_of_coloured(simulation, step, island, threads);
     if (blow.fastest == 0) return;
     step.was_hit[island] = 1;
@@ -264,7 +264,7 @@ void leave_recalled(const ColouredIsland& island, const Threads& threads) {
 /// solve_island() of a coloured island.
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
-                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+                           const Threads& threads, LaneCount lanes = most_lanes()) {
     const bool impulse = simulation.settings.solver == Solver::kImpulse;
     hold_still(simulation, step, island);
     if (is_pushed(simulation, step, island)) step.pushed[island] = Push::kAll;
@@ -294,7 +294,7 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
 /// relax_island() of a coloured island.
 template <class Threads>
 void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
-                           const Threads& threads, LaneCount lanes = LaneCount::kEight) {
+                           const Threads& threads, LaneCount lanes = most_lanes()) {
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
     const ColouredStage& stage = coloured.stage();
     if (simulation.settings.solver == Solver::kSoft) {

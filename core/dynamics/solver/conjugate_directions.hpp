@@ -76,22 +76,24 @@ class ConjugateDirections {
     template <class Work>
     double sweep_round(BatchRange batches, Sweep sweep, const Work& work) const {
         const ColouredStage& stage = island_.stage();
-        return one_by_one(batches, sweep, [&](BatchRange one) {
-            if (sweep.backward && holds_) go_along_round(stage, one, carried_, length_);
-            if (sweep.backward && !holds_) begin_round_directions(stage, one);
-            const double left = work(one);
-            if (!sweep.backward) weigh_round_step(stage, one);
+        const std::vector<Batch>& all = stage.step.coloured.round;
+        return largest_of_twos(all, batches, sweep.backward, [&](BatchRange some) {
+            if (sweep.backward && holds_) go_along_round(stage, some, carried_, length_);
+            if (sweep.backward && !holds_) begin_round_directions(stage, some);
+            const double left = work(some);
+            if (!sweep.backward) weigh_round_step(stage, some);
             return left;
         });
     }
     template <class Work>
     double sweep_general(BatchRange batches, Sweep sweep, const Work& work) const {
         const ColouredStage& stage = island_.stage();
-        return one_by_one(batches, sweep, [&](BatchRange one) {
-            if (sweep.backward && holds_) go_along_general(stage, one, carried_, length_);
-            if (sweep.backward && !holds_) begin_general_directions(stage, one);
-            const double left = work(one);
-            if (!sweep.backward) weigh_general_step(stage, one);
+        const std::vector<Batch>& all = stage.step.coloured.general;
+        return largest_of_twos(all, batches, sweep.backward, [&](BatchRange some) {
+            if (sweep.backward && holds_) go_along_general(stage, some, carried_, length_);
+            if (sweep.backward && !holds_) begin_general_directions(stage, some);
+            const double left = work(some);
+            if (!sweep.backward) weigh_general_step(stage, some);
             return left;
         });
     }
@@ -152,16 +154,6 @@ class ConjugateDirections {
             sums[place] = work(island_.stage(), bodies);
         });
         return sums;
-    }
-    /// @return the largest that work(a batch) returns
-    template <class Work>
-    double one_by_one(BatchRange batches, Sweep sweep, const Work& work) const {
-        double largest = 0;
-        for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-            const std::uint32_t batch = sweep.backward ? batches.end - 1 - (i - batches.begin) : i;
-            largest = std::max(largest, work(BatchRange{batch, batch + 1}));
-        }
-        return largest;
     }
     /// Sums of round_work and general_work, in the order of the batches for any number of threads.
     std::array<double, 2> work() const {

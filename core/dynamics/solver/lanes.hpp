@@ -6,21 +6,42 @@
 #include "core/dynamics/state/coloured_rows.hpp"
 #include "core/simd/simd.hpp"
 
-// The solver's kernels are templates over F, float or Float8: with the former they work on one lane
-// of a batch, with the latter on all eight. Every operation is rounded as IEEE says, element by
-// element, so that both give the same bits.
+// The solver's kernels are templates over F, float, Float8 or Float16: they work on one lane of a
+// batch, on all eight, or on those of two batches, of which the second lies right behind the first
+// and has as many rows. Every operation is rounded as IEEE says, element by element, so that all
+// give the same bits.
 
 namespace tesserae::lanes {
 
-using simd::Float4, simd::Float8;
+using simd::Float4, simd::Float8, simd::Float16;
 using simd::fused, simd::larger, simd::magnitude, simd::square_root, simd::largest_lane;
 
-/// Which lanes of a batch are worked on.
+/// Which lanes of a batch are worked on. What is loaded and stored is of the batch's only T, of its
+/// T for each row, or of its responses: of two batches each has its own.
 template <class F>
 struct Lane;
+template <class F>
+struct LaneOfOneBatch {
+    static constexpr std::size_t batches = 1;
+    template <class T>
+    [[gnu::always_inline]] const Lane<F>& in_batch() const {
+        return static_cast<const Lane<F>&>(*this);
+    }
+    template <class T>
+    [[gnu::always_inline]] const Lane<F>& in_row() const {
+        return static_cast<const Lane<F>&>(*this);
+    }
+    [[gnu::always_inline]] const Lane<F>& in_responses() const {
+        return static_cast<const Lane<F>&>(*this);
+    }
+};
 template <>
-struct Lane<Float8> {
+struct Lane<Float8> : LaneOfOneBatch<Float8> {
     static constexpr std::size_t first = 0, count = kLanes;
+    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
+                                               std::size_t i) const {
+        return places[i];
+    }
     [[gnu::always_inline]] Float8 load(const Eight& from) const {
         Float8 x;
         std::memcpy(&x, from.lane.data(), sizeof x);
@@ -37,9 +58,14 @@ struct Lane<Float8> {
     }
 };
 template <>
-struct Lane<float> {
+struct Lane<float> : LaneOfOneBatch<float> {
     static constexpr std::size_t count = 1;
     std::size_t first;
+    explicit Lane(std::size_t lane) : first(lane) {}
+    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
+                                               std::size_t) const {
+        return places[first];
+    }
     [[gnu::always_inline]] float load(const Eight& from) const { return from.lane[first]; }
     [[gnu::always_inline]] void store(float x, Eight& to) const { to.lane[first] = x; }
     [[gnu::always_inline]] float load(const RoughEight& from) const {
@@ -49,6 +75,56 @@ struct Lane<float> {
         to.lane[first] = simd::to_half(x);
     }
 };
+
+#ifdef __AVX512F__
+template <>
+class Lane<Float16> {
+    static constexpr Lane<Float8> kEight{};
+
+  public:
+    static constexpr std::size_t batches = 2, first = 0, count = 2 * kLanes;
+    /// @param rows   of either batch
+    explicit Lane(std::uint32_t rows) : rows_(rows) {}
+
+    template <class T>
+    [[gnu::always_inline]] Lane in_batch() const {
+        return {rows_, sizeof(T)};
+    }
+    template <class T>
+    [[gnu::always_inline]] Lane in_row() const {
+        return {rows_, rows_ * sizeof(T)};
+    }
+    [[gnu::always_inline]] Lane in_responses() const {
+        return {rows_, responses_of(rows_) * sizeof(RoughEight)};
+    }
+    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
+                                               std::size_t i) const {
+        return i < kLanes ? places[i] : beside(places)[i - kLanes];
+    }
+    [[gnu::always_inline]] Float16 load(const Eight& from) const {
+        return simd::both(kEight.load(from), kEight.load(beside(from)));
+    }
+    [[gnu::always_inline]] void store(Float16 x, Eight& to) const {
+        kEight.store(simd::low_half(x), to);
+        kEight.store(simd::high_half(x), const_cast<Eight&>(beside(to)));
+    }
+    [[gnu::always_inline]] Float16 load(const RoughEight& from) const {
+        return simd::from_halves(simd::same_bits<simd::Half8>(from.lane),
+                                 simd::same_bits<simd::Half8>(beside(from).lane));
+    }
+
+  private:
+    Lane(std::uint32_t rows, std::size_t apart) : rows_(rows), apart_(apart) {}
+    /// What the second batch has instead.
+    template <class T>
+    [[gnu::always_inline]] const T& beside(const T& of_first) const {
+        return *reinterpret_cast<const T*>(reinterpret_cast<const char*>(&of_first) + apart_);
+    }
+
+    std::uint32_t rows_;
+    std::size_t apart_ = 0;  ///< [bytes]
+};
+#endif
 
 // ---- four floats of eight records, transposed ----
 [[gnu::always_inline]] inline void load_four(const std::array<const float*, 1>& from,
@@ -94,6 +170,37 @@ struct Lane<float> {
         std::memcpy(to[i + 4], &high, sizeof high);
     }
 }
+
+#ifdef __AVX512F__
+/// Each four lanes as a matrix of four by four, transposed.
+[[gnu::always_inline]] inline std::array<Float16, 4> transposed(const std::array<Float16, 4>& r) {
+    const Float16 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
+    const Float16 c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
+    return {_mm512_shuffle_ps(a, c, 0x44), _mm512_shuffle_ps(a, c, 0xee),
+            _mm512_shuffle_ps(b, d, 0x44), _mm512_shuffle_ps(b, d, 0xee)};
+}
+[[gnu::always_inline]] inline void load_four(const std::array<const float*, 2 * kLanes>& from,
+                                             std::array<Float16, 4>& to) {
+    std::array<Float16, 4> r;  // the four of lanes i, i + 4, i + 8, i + 12
+    for (std::size_t i = 0; i < 4; ++i) {
+        r[i] = _mm512_castps128_ps512(_mm_loadu_ps(from[i]));
+        r[i] = _mm512_insertf32x4(r[i], _mm_loadu_ps(from[i + 4]), 1);
+        r[i] = _mm512_insertf32x4(r[i], _mm_loadu_ps(from[i + 8]), 2);
+        r[i] = _mm512_insertf32x4(r[i], _mm_loadu_ps(from[i + 12]), 3);
+    }
+    to = transposed(r);
+}
+[[gnu::always_inline]] inline void store_four(const std::array<Float16, 4>& from,
+                                              const std::array<float*, 2 * kLanes>& to) {
+    const std::array<Float16, 4> r = transposed(from);
+    for (std::size_t i = 0; i < 4; ++i) {
+        _mm_storeu_ps(to[i], _mm512_castps512_ps128(r[i]));
+        _mm_storeu_ps(to[i + 4], _mm512_extractf32x4_ps(r[i], 1));
+        _mm_storeu_ps(to[i + 8], _mm512_extractf32x4_ps(r[i], 2));
+        _mm_storeu_ps(to[i + 12], _mm512_extractf32x4_ps(r[i], 3));
+    }
+}
+#endif
 
 // ---- vectors and bivectors of lanes ----
 template <class F>
@@ -207,7 +314,7 @@ class LaneBodies {
     [[gnu::always_inline]] LaneBodies(const Lane<F>& lane, BodyChange* records,
                                       const std::array<std::uint32_t, kLanes>& places) {
         for (std::size_t i = 0; i < kCount; ++i) {
-            const std::uint32_t place = places[lane.first + i];
+            const std::uint32_t place = lane.template in_batch<Batch>().place(places, i);
             from_[i] = records + place;
             to_[i] = place == 0 ? &nowhere_ : records + place;
         }

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <vector>
+
+#include "core/dynamics/solver/lanes.hpp"
+#include "core/dynamics/solver/sweep.hpp"
+
+// Single rows of coloured islands, lane by lane.
+namespace tesserae::lanes {
+
+/// @param keep       NormalPass::keep; 0 of points that a lane does not have, which keep nothing
+/// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
+template <class F>
+[[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F keep, F response, F least,
+                                               NormalRow& row) {
+    const F inverse = (F{} + 1.0f) / response;
+    lane.store(response > least ? (keep > F{} ? inverse : F{}) : F{}, row.mass);
+}
+/// @param fours   target, relax target, keep, normal impulse
+/// @param place   in `relax` and `impulses`
+/// @return the impulse to start from
+template <class F>
+[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
+                                             std::size_t place, NormalRow& row, NormalRelax& relax,
+                                             std::vector<Eight>& impulses) {
+    lane.store(fours[0], row.target);
+    lane.store(fours[1], relax.target[place]);
+    if (!relax.keep.empty()) lane.store(fours[2], relax.keep[place]);
+    lane.store(fours[3], impulses[place]);
+    return fours[3];
+}
+/// NormalPass::keep of a row and those behind it; null where contacts are rigid.
+inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
+    return relax.keep.empty() ? nullptr : &relax.keep[place];
+}
+
+/// Where the normal parts of rows are: in their rows, and in lists of one Eight each.
+template <class F>
+struct NormalLanes {
+    Lane<F> in_row, in_list;
+};
+
+/// The normal velocity that a pass aims at, less that of the start.
+template <class F>
+[[gnu::always_inline]] inline F target_of(const NormalLanes<F>& lanes, const NormalRow& row,
+                                          const Eight& relax_target, Pass pass) {
+    return pass == Pass::kSolve ? lanes.in_row.load(row.target) : lanes.in_list.load(relax_target);
+}
+/// One step of a normal impulse.
+/// @param keep   as of keep_from(); null in passes that need none
+/// @param left   of its target, less the change of the normal velocity
+/// @return its change
+template <class F>
+[[gnu::always_inline]] inline F solve_normal(const NormalLanes<F>& lanes, const NormalRow& row,
+                                             const Eight* keep, F left, Eight& impulse) {
+    const F old = lanes.in_list.load(impulse);
+    F change = lanes.in_row.load(row.mass) * left;
+    if (keep) change = lanes.in_list.load(*keep) * (old + change) - old;
+    change = larger(change, -old);  // sooner there than by the impulse
+    lanes.in_list.store(old + change, impulse);
+    return change;
+}
+
+/// The nearest of length at most `most`; zero stays zero.
+template <class F, template <class> class Impulse>
+[[gnu::always_inline]] inline Impulse<F> clamped(const Impulse<F>& impulse, F most) {
+    const F squared = dot(impulse, impulse);
+    const F scale = squared > most * most ? most / square_root(squared) : F{} + 1.0f;
+    return scale * impulse;
+}
+
+/// A change over the mass that it moves: what was left to solve [m/s].
+template <class F>
+[[gnu::always_inline]] inline F velocity_left(F mass, F change) {
+    return mass > F{} ? magnitude(change) / mass : F{};
+}
+/// Its square.
+template <class F>
+[[gnu::always_inline]] inline F squared_velocity_left(F mass, const LaneVec4<F>& change) {
+    const LaneVec4<F> left = (mass > F{} ? (F{} + 1.0f) / mass : F{}) * change;
+    return dot(left, left);
+}
+
+}  // namespace tesserae::lanes
