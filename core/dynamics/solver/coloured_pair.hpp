@@ -69,11 +69,11 @@ template <class F>
     for (std::size_t part = 0; part < 6; ++part) {
         std::array<const float*, Lane<F>::count> from;
         for (std::size_t i = 0; i < from.size(); ++i)
-            from[i] = inertias[places[lane.first + i]].entry[part].data();
+            from[i] = inertias[lane.template in_batch<Batch>().at(places, i)].entry[part].data();
         std::array<F, 4> four;
         load_four(from, four);
         for (std::size_t i = 0; i < 4 && 4 * part + i < to.size(); ++i)
-            lane.store(four[i], to[4 * part + i]);
+            lane.template in_batch<PairInertia>().store(four[i], to[4 * part + i]);
     }
 }
 

@@ -5,38 +5,13 @@
 #include <cmath>
 #include <span>
 
+#include "core/dynamics/solver/coloured_input.hpp"
 #include "core/dynamics/solver/coloured_kernels.hpp"
-#include "core/dynamics/solver/coloured_row.hpp"
 #include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/solver/lanes.hpp"
 #include "core/dynamics/solver/rolling_row.hpp"
 
 namespace tesserae::lanes {
-
-/// Four floats of each lane, as they are put into rows.
-using Fours = std::array<std::array<float, 4>, kLanes>;
-
-/// A contact of each lane's round bodies.
-struct alignas(32) EightPoints {
-    Fours normal = {}, r_a = {}, r_b = {};
-    Fours velocity = {};  ///< relative, of the start
-    Fours impulse = {};   ///< the tangent one, to start from
-    Fours along = {};     ///< target, relax target, keep, normal impulse
-};
-
-/// A pair of each lane and its points, of any bodies.
-struct alignas(32) EightPairs {
-    struct Points {
-        Fours place = {};  ///< from the centre
-        Fours impulse = {}, along = {};
-    };
-    Fours normal = {};
-    Fours centre_a = {}, centre_b = {};  ///< from the bodies' centres
-    Fours velocity = {};                 ///< of b against a at the centre, at the start
-    std::array<Eight, 6> turning = {};   ///< likewise
-    Eight rounding;                      ///< see least_response()
-    std::array<Points, kManifoldPoints> points = {};
-};
 
 inline void put(const Vec4& v, std::array<float, 4>& to) {
     Eigen::Map<Eigen::Vector4f>(to.data()) = v.cast<float>();
@@ -164,15 +139,6 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         point.along[lane] = {static_cast<float>(targets.solve), static_cast<float>(targets.relax),
                              static_cast<float>(targets.keep), normal};
     }
-}
-
-template <class F>
-[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane, const Fours& fours) {
-    std::array<const float*, Lane<F>::count> from;
-    for (std::size_t i = 0; i < from.size(); ++i) from[i] = fours[lane.first + i].data();
-    LaneVec4<F> v;
-    load_four(from, v.c);
-    return v;
 }
 
 /// Calls work(Lane<F>, batch) for all lanes of the batches.

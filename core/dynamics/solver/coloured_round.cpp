@@ -34,8 +34,8 @@ template <bool kFriction, bool kRolling, class F>
     store(lane, n, row.normal);
     const LaneVec4<F> along = load(lane, points.along);
     make_normal(lane, along[2], response, F{}, row.along);
-    const F normal_impulse = start_normal(lane, along, batch, row.along, coloured.round_relax,
-                                          coloured.round_impulses.normal);
+    const F normal_impulse = start_normal({lane, lane}, along, batch, row.along,
+                                          coloured.round_relax, coloured.round_impulses.normal);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];

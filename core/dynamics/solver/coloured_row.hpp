@@ -8,6 +8,12 @@
 // Single rows of coloured islands, lane by lane.
 namespace tesserae::lanes {
 
+/// Where the normal parts of rows are: in their rows, and in lists of one Eight each.
+template <class F>
+struct NormalLanes {
+    Lane<F> in_row, in_list;
+};
+
 /// @param keep       NormalPass::keep; 0 of points that a lane does not have, which keep nothing
 /// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
 template <class F>
@@ -20,25 +26,19 @@ template <class F>
 /// @param place   in `relax` and `impulses`
 /// @return the impulse to start from
 template <class F>
-[[gnu::always_inline]] inline F start_normal(const Lane<F>& lane, const LaneVec4<F>& fours,
+[[gnu::always_inline]] inline F start_normal(const NormalLanes<F>& lanes, const LaneVec4<F>& fours,
                                              std::size_t place, NormalRow& row, NormalRelax& relax,
                                              std::vector<Eight>& impulses) {
-    lane.store(fours[0], row.target);
-    lane.store(fours[1], relax.target[place]);
-    if (!relax.keep.empty()) lane.store(fours[2], relax.keep[place]);
-    lane.store(fours[3], impulses[place]);
+    lanes.in_row.store(fours[0], row.target);
+    lanes.in_list.store(fours[1], relax.target[place]);
+    if (!relax.keep.empty()) lanes.in_list.store(fours[2], relax.keep[place]);
+    lanes.in_list.store(fours[3], impulses[place]);
     return fours[3];
 }
 /// NormalPass::keep of a row and those behind it; null where contacts are rigid.
 inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
     return relax.keep.empty() ? nullptr : &relax.keep[place];
 }
-
-/// Where the normal parts of rows are: in their rows, and in lists of one Eight each.
-template <class F>
-struct NormalLanes {
-    Lane<F> in_row, in_list;
-};
 
 /// The normal velocity that a pass aims at, less that of the start.
 template <class F>

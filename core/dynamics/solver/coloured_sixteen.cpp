@@ -1,5 +1,6 @@
 #include "core/dynamics/solver/coloured_sixteen.hpp"
 
+#include "core/dynamics/solver/coloured_general_start.hpp"
 #include "core/dynamics/solver/coloured_general_sweep.hpp"
 #include "core/dynamics/solver/coloured_round_sweep.hpp"
 
@@ -32,12 +33,21 @@ double sweep_general(ColouredIslands& coloured, std::uint32_t first, Sweep sweep
     return with_kind_of_general(coloured, sweep.pass, sweep_two);
 }
 
+void start_general(ColouredIslands& coloured, std::uint32_t first, bool made,
+                   const EightPairs* pairs) {
+    const Lane<Float16> lane(coloured.general[first].rows);
+    with_kind_of_general(coloured, Pass::kSolve, [&](auto friction, auto rolling, auto uneven) {
+        start_pairs<friction(), rolling(), uneven()>(coloured, lane, first, made, *pairs);
+    });
+}
+
 #else
 
 const bool kCompiled = false;
 
 double sweep_round(ColouredIslands&, std::uint32_t, Sweep) { return 0; }
 double sweep_general(ColouredIslands&, std::uint32_t, Sweep) { return 0; }
+void start_general(ColouredIslands&, std::uint32_t, bool, const lanes::EightPairs*) {}
 
 #endif
 

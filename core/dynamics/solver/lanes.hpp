@@ -38,9 +38,10 @@ struct LaneOfOneBatch {
 template <>
 struct Lane<Float8> : LaneOfOneBatch<Float8> {
     static constexpr std::size_t first = 0, count = kLanes;
-    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
-                                               std::size_t i) const {
-        return places[i];
+    /// What the i-th lane has.
+    template <class T>
+    [[gnu::always_inline]] const T& at(const std::array<T, kLanes>& of, std::size_t i) const {
+        return of[i];
     }
     [[gnu::always_inline]] Float8 load(const Eight& from) const {
         Float8 x;
@@ -62,9 +63,9 @@ struct Lane<float> : LaneOfOneBatch<float> {
     static constexpr std::size_t count = 1;
     std::size_t first;
     explicit Lane(std::size_t lane) : first(lane) {}
-    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
-                                               std::size_t) const {
-        return places[first];
+    template <class T>
+    [[gnu::always_inline]] const T& at(const std::array<T, kLanes>& of, std::size_t) const {
+        return of[first];
     }
     [[gnu::always_inline]] float load(const Eight& from) const { return from.lane[first]; }
     [[gnu::always_inline]] void store(float x, Eight& to) const { to.lane[first] = x; }
@@ -97,16 +98,17 @@ class Lane<Float16> {
     [[gnu::always_inline]] Lane in_responses() const {
         return {rows_, responses_of(rows_) * sizeof(RoughEight)};
     }
-    [[gnu::always_inline]] std::uint32_t place(const std::array<std::uint32_t, kLanes>& places,
-                                               std::size_t i) const {
-        return i < kLanes ? places[i] : beside(places)[i - kLanes];
+    template <class T>
+    [[gnu::always_inline]] const T& at(const std::array<T, kLanes>& of, std::size_t i) const {
+        return i < kLanes ? of[i] : beside(of)[i - kLanes];
     }
     [[gnu::always_inline]] Float16 load(const Eight& from) const {
         return simd::both(kEight.load(from), kEight.load(beside(from)));
     }
-    [[gnu::always_inline]] void store(Float16 x, Eight& to) const {
+    template <class Lanes>
+    [[gnu::always_inline]] void store(Float16 x, Lanes& to) const {
         kEight.store(simd::low_half(x), to);
-        kEight.store(simd::high_half(x), const_cast<Eight&>(beside(to)));
+        kEight.store(simd::high_half(x), const_cast<Lanes&>(beside(to)));
     }
     [[gnu::always_inline]] Float16 load(const RoughEight& from) const {
         return simd::from_halves(simd::same_bits<simd::Half8>(from.lane),
@@ -314,7 +316,7 @@ class LaneBodies {
     [[gnu::always_inline]] LaneBodies(const Lane<F>& lane, BodyChange* records,
                                       const std::array<std::uint32_t, kLanes>& places) {
         for (std::size_t i = 0; i < kCount; ++i) {
-            const std::uint32_t place = lane.template in_batch<Batch>().place(places, i);
+            const std::uint32_t place = lane.template in_batch<Batch>().at(places, i);
             from_[i] = records + place;
             to_[i] = place == 0 ? &nowhere_ : records + place;
         }
