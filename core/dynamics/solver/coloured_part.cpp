@@ -1,6 +1,6 @@
 #include "core/dynamics/solver/coloured_kernels.hpp"
 #include "core/dynamics/solver/coloured_place.hpp"
-#include "core/dynamics/solver/coloured_points.hpp"
+#include "core/dynamics/solver/coloured_row.hpp"
 
 // What the impulses of a coloured island's load do, and a part of them; see LoadWork.
 namespace tesserae {
