@@ -57,6 +57,7 @@ class AllThreads {
 }  // namespace
 
 void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.awaits[island] == Awaits::kNothing) return;
     tesserae::solve_coloured_blow(simulation, step, island, AllThreads{});
 }
 

@@ -107,6 +107,14 @@ constexpr double kBlowResidual = 1e-4;
 /// a wall needs 1000 sweeps); more, and boxes that settle cost several times as much.
 constexpr std::size_t kBlowWork = 10000;
 
+/// Islands of so many contacts solve a blow among the contacts near it: of bodies that touch what
+/// is hit, those that touch these, and so on, this often. One more, and it takes three times as
+/// long; one less, and it reaches out of there four times as often, and all is solved again.
+constexpr std::uint32_t kPatchedFrom = 1024;
+constexpr int kPatchWidth = 2;
+/// What such a contact costs, of two round bodies and of others, in those of a whole island.
+constexpr std::size_t kRoundPatchCost = 16, kPatchCost = 64;
+
 /// The part for a large island, whose sweeps are `iterations` at most. Less, and large heaps cost
 /// more while they settle, as something hits something in every step.
 constexpr double kLargeBlowResidual = 1e-3;

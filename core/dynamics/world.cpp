@@ -143,9 +143,17 @@ void World::build_islands() {
 
 void World::solve_blows(Schedule& schedule) {
     const Observed stage(*this, Stage::kSolveBlows, step_.islands.size());
-    const auto hits = [&](Range contacts) { return has_blow(simulation_, step_, contacts); };
-    if (schedule.any_range(step_.contacts.size(), kContactGrain, hits))
-        schedule.solve_blows(simulation_, step_);
+    const std::size_t count = step_.contacts.size();
+    hits_.resize(count / kContactGrain + 1);
+    for (std::vector<std::uint32_t>& list : hits_) list.clear();
+    schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
+        list_blows(simulation_, step_, contacts, hits_[contacts.begin / kContactGrain]);
+    });
+    if (std::all_of(hits_.begin(), hits_.end(), [](const auto& list) { return list.empty(); }))
+        return;
+    blow_patches_.begin(simulation_, step_, hits_);
+    schedule.solve_blows(simulation_, step_);
+    if (blow_patches_.end(simulation_, step_)) schedule.solve_blows(simulation_, step_);
 }
 
 void World::integrate_velocities(Schedule& schedule) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/dynamics/stages/blow_patches.hpp"
 #include "core/dynamics/stages/chunked_list.hpp"
 #include "core/dynamics/stages/first_loads.hpp"
 #include "core/dynamics/stages/impacts.hpp"
@@ -66,8 +67,10 @@ class World {
     ChunkedList<Contact> contacts_;
     Seams seams_;
     FirstLoads first_loads_;
+    BlowPatches blow_patches_;
     Impacts impacts_;
-    std::vector<std::uint8_t> has_fast_;  ///< of every range of kBodyGrain bodies
+    std::vector<std::vector<std::uint32_t>> hits_;  ///< of every range of contacts, the blows
+    std::vector<std::uint8_t> has_fast_;            ///< of every range of kBodyGrain bodies
     /// Of every range of contacts, and an end.
     std::vector<KeptImpulses::Size> first_pushing_;
     StageObserver* observer_ = nullptr;

@@ -22,17 +22,17 @@ constexpr double kEnergyRounding = 1e-12, kNotJammed = 1e-6;
 
 }  // namespace
 
-bool has_blow(const Simulation& simulation, const StepData& step, Range contacts) {
+void list_blows(const Simulation& simulation, const StepData& step, Range contacts,
+                std::vector<std::uint32_t>& blows) {
     for (std::size_t begin = contacts.begin; begin < contacts.end;) {
         const ContactList::Run run = step.contacts.run(begin, contacts.end);
         const BlowFilter filter(simulation, step, step.contacts[begin]);
         for (std::size_t i = run.begin; i < run.end; ++i)
             if (filter.passes(step.contacts.point(i)) &&
                 blow_of(simulation, step, step.contacts[i]).fastest > 0)
-                return true;
+                blows.push_back(static_cast<std::uint32_t>(i));
         begin = run.end;
     }
-    return false;
 }
 
 Blow larger_of(const Blow& a, const Blow& b) {

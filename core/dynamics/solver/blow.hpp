@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/dynamics/solver/targets.hpp"
 
 namespace tesserae {
 
-/// Whether any of the contacts is one. Needs the velocities before gravity, as all of this.
-bool has_blow(const Simulation& simulation, const StepData& step, Range contacts);
+/// Adds those of the contacts that are one. Needs the velocities before gravity, as all of this.
+void list_blows(const Simulation& simulation, const StepData& step, Range contacts,
+                std::vector<std::uint32_t>& blows);
 
 /// The largest numbers of all contacts of runs.
 Blow blow_of_runs(const Simulation& simulation, const StepData& step,

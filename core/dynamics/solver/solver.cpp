@@ -375,6 +375,7 @@ void push(const Simulation& simulation, StepData& step, std::size_t island) {
 }  // namespace
 
 void solve_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.awaits[island] == Awaits::kNothing) return;
     if (step.islands.is_coloured(island))
         return solve_coloured_blow(simulation, step, island, OneThread{});
     const Blow blow = blow_of_runs(simulation, step, step.islands.runs_in(island));
@@ -382,7 +383,9 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
     step.was_hit[island] = 1;
     start_rows(simulation, step, island, Cause::kBlow);
     const std::span<ContactRow> rows = rows_of(step, island);
-    const Effort effort = effort_of_blow(simulation, rows.size(), blow.fastest);
+    const Effort effort = step.awaits[island] == Awaits::kPatch
+                              ? effort_of_patch(simulation, rows.size(), blow.fastest)
+                              : effort_of_blow(simulation, rows.size(), blow.fastest);
     if (blow.returned == 0) {
         compress(simulation, step, island, blow, effort);
         return keep_hits(step, island);

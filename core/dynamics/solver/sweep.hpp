@@ -87,6 +87,13 @@ inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t con
             kLargeBlowResidual * fastest, 4};
 }
 
+/// Of a blow among the contacts near it, see BlowPatches.
+inline Effort effort_of_patch(const Simulation& simulation, std::size_t contacts, double fastest) {
+    Effort effort = effort_of_blow(simulation, contacts, fastest);
+    effort.enough = kLargeBlowResidual * fastest;
+    return effort;
+}
+
 /// What a load's impulses have done to an island.
 struct LoadWork {
     double work = 0;    ///< times the velocities before them, less their targets [J]

@@ -79,6 +79,8 @@ class ContactList {
     /// All runs, and one of them by its number.
     std::size_t run_count() const { return shared_size_; }
     Run nth_run(std::size_t n) const { return run(shared_[n].first, size_); }
+    /// The number of the run that a contact is in.
+    std::uint32_t run_of(std::size_t i) const { return place_of_shared_[i]; }
     /// Behind the last contact of the pair that contact i is of.
     std::size_t end_of_pair(std::size_t i) const {
         std::size_t end = i;

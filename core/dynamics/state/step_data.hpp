@@ -127,6 +127,9 @@ struct BodyMotion {
 /// What takes an island's overlap away after its load: kStraight turns no body.
 enum class Push : std::uint8_t { kNone, kAll, kStraight };
 
+/// Whether solve_blow() has to do with an island: kPatch is a part of one, see BlowPatches.
+enum class Awaits : std::uint8_t { kNothing, kBlow, kPatch };
+
 /// Of a body before a blow and at its greatest compression.
 struct BlowMotion {
     BodyMotion before, compressed;
@@ -186,6 +189,7 @@ struct StepData {
     std::vector<BodyId> bodies_of_rows;   ///< room for two for each of `rows`
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
     std::vector<std::uint8_t> was_hit;    ///< of every island: there was a blow
+    std::vector<Awaits> awaits;           ///< of every island
     std::vector<std::uint32_t> filled;    ///< which of the lists kept before have something
 };
 

@@ -1,0 +1,215 @@
+#include "core/dynamics/stages/blow_patches.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/solver/blow.hpp"
+
+namespace tesserae {
+namespace {
+
+/// Calls visit(batch, lane, cost of one of its contacts) for all pairs of a coloured island.
+template <class Visit>
+void for_pairs(const ColouredIslands& coloured, std::size_t place, const Visit& visit) {
+    const auto visit_all = [&](const std::vector<Batch>& all, BatchRange range, std::size_t cost) {
+        for (std::uint32_t i = range.begin; i < range.end; ++i)
+            for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k) visit(all[i], k, cost);
+    };
+    for (std::uint32_t i = coloured.first_colour[place]; i < coloured.first_colour[place + 1];
+         ++i) {
+        visit_all(coloured.round, coloured.colours[i].round, kRoundPatchCost);
+        visit_all(coloured.general, coloured.colours[i].general, kPatchCost);
+    }
+}
+
+Range bodies_of(const ColouredIslands& coloured, std::size_t place) {
+    return {coloured.first_body[place], coloured.first_body[place + 1]};
+}
+
+}  // namespace
+
+void BlowPatches::begin(const Simulation& simulation, StepData& step,
+                        std::span<const std::vector<std::uint32_t>> hits) {
+    Islands& islands = step.islands;
+    islands_ = islands.size(), runs_ = islands.runs.size();
+    step.awaits.assign(islands_, Awaits::kBlow);
+    patched_.clear(), motions_.clear(), rim_.clear();
+    hit_.assign(simulation.bodies.size(), 0);
+    for (const std::vector<std::uint32_t>& list : hits)
+        for (const std::uint32_t contact : list) {
+            const auto [a, b] = step.contacts.pair(contact);
+            hit_[a] = hit_[b] = 1;
+        }
+    near_.assign(step.coloured.bodies.size(), 0);
+    parent_.resize(near_.size());
+    for (std::size_t island = 0; island < islands_; ++island)
+        if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom)
+            add_patches(step, island);
+    if (patched_.empty()) return;
+    const std::size_t rows = islands.first_row.back() + islands.contacts.back();
+    step.rows.resize(std::max(step.rows.size(), rows));
+    if (simulation.needs.rolling)
+        step.rolling_rows.resize(std::max(step.rolling_rows.size(), rows));
+    step.bodies_of_rows.resize(std::max(step.bodies_of_rows.size(), 2 * rows));
+}
+
+/// @return how many of the bodies (places in ColouredIslands::bodies) are hit
+std::size_t BlowPatches::mark_hit(const StepData& step, Range bodies) {
+    std::size_t count = 0;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i)
+        count += near_[i] = hit_[step.coloured.bodies[i]];
+    return count;
+}
+
+/// By the bodies that touch those that are near.
+void BlowPatches::widen(const StepData& step, std::size_t place) {
+    next_ = near_;
+    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k, std::size_t) {
+        if (!near_[batch.a[k]] && !near_[batch.b[k]]) return;
+        next_[batch.a[k]] = next_[batch.b[k]] = 1;
+    });
+    next_[0] = 0;  // stands for all that do not move
+    near_.swap(next_);
+}
+
+std::uint32_t BlowPatches::root_of(std::uint32_t place) {
+    while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
+    return place;
+}
+
+/// Pairs of bodies that are near, in pairs_, and what touches the others, in rim_.
+/// @return what the former cost
+std::size_t BlowPatches::join(const StepData& step, std::size_t place) {
+    const Range bodies = bodies_of(step.coloured, place);
+    std::iota(parent_.begin() + static_cast<std::ptrdiff_t>(bodies.begin),
+              parent_.begin() + static_cast<std::ptrdiff_t>(bodies.end),
+              static_cast<std::uint32_t>(bodies.begin));
+    pairs_.clear();
+    std::size_t cost = 0;
+    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k, std::size_t of_each) {
+        const std::uint32_t a = batch.a[k], b = batch.b[k];
+        if (!near_[a] && !near_[b]) return;
+        if ((a != 0 && !near_[a]) || (b != 0 && !near_[b])) {
+            for (std::uint32_t p = 0; p < batch.points[k]; ++p)
+                rim_.push_back(batch.contact[k] + p);
+            return;
+        }
+        cost += of_each * batch.points[k];
+        pairs_.push_back({a != 0 ? a : b, step.contacts.run_of(batch.contact[k])});
+        if (a == 0 || b == 0) return;
+        const std::uint32_t p = root_of(a), q = root_of(b);
+        parent_[std::max(p, q)] = std::min(p, q);
+    });
+    for (Pair& pair : pairs_) pair.patch = root_of(pair.patch);
+    return cost;
+}
+
+/// A patch, behind the islands that there are.
+void BlowPatches::add_island(StepData& step, std::span<const Pair> pairs) {
+    Islands& islands = step.islands;
+    const std::size_t last = islands.size() - 1;
+    std::uint32_t first_row = islands.first_row[last];
+    // The first one of all begins where the rows of the islands that are not coloured end.
+    if (last < islands_)
+        first_row = static_cast<std::uint32_t>(step.rows.size());
+    else
+        first_row += islands.contacts[last];
+    std::uint32_t contacts = 0;
+    for (const Pair& pair : pairs) {
+        islands.runs.push_back(pair.run);
+        contacts += static_cast<std::uint32_t>(step.contacts.nth_run(pair.run).size());
+    }
+    islands.first.push_back(static_cast<std::uint32_t>(islands.runs.size()));
+    islands.contacts.push_back(contacts);
+    islands.coloured.push_back(Islands::kNotColoured);
+    islands.held.push_back(1);
+    islands.conjugates.push_back(0);
+    islands.falling_mass.push_back(0);
+    islands.first_row.push_back(first_row);
+    step.residual.push_back(0);
+    step.has_rows.push_back(0);
+    step.was_hit.push_back(0);
+    step.pushed.push_back(Push::kNone);
+    step.awaits.push_back(Awaits::kPatch);
+}
+
+void BlowPatches::add_patches(StepData& step, std::size_t island) {
+    const std::size_t place = step.islands.coloured[island];
+    const Range bodies = bodies_of(step.coloured, place);
+    const std::size_t hit = mark_hit(step, bodies);
+    if (hit == 0 || hit * kRoundPatchCost > bodies.end - bodies.begin) return;
+    for (int i = 0; i < kPatchWidth; ++i) widen(step, place);
+    const Patched patched = {island, motions_.size(), rim_.size(), step.islands.runs.size()};
+    if (join(step, place) > step.islands.contacts[island]) {
+        rim_.resize(patched.first_rim);
+        return;
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+    for (auto first = pairs_.begin(); first != pairs_.end();) {
+        const auto end = std::find_if(first, pairs_.end(),
+                                      [&](const Pair& pair) { return pair.patch != first->patch; });
+        add_island(step, {first, end});
+        first = end;
+    }
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const BodyId id = step.coloured.bodies[i];
+        if (near_[i]) motions_.push_back({id, motion_of(step, id)});
+    }
+    patched_.push_back(patched);
+    step.awaits[island] = Awaits::kNothing;
+}
+
+/// Whether anything that is not in a patch of the island is hit now.
+bool BlowPatches::reaches_out(const Simulation& simulation, const StepData& step,
+                              std::size_t patched) const {
+    const std::size_t begin = patched_[patched].first_rim;
+    const std::size_t end =
+        patched + 1 < patched_.size() ? patched_[patched + 1].first_rim : rim_.size();
+    return std::any_of(rim_.begin() + static_cast<std::ptrdiff_t>(begin),
+                       rim_.begin() + static_cast<std::ptrdiff_t>(end), [&](std::uint32_t contact) {
+                           return blow_of(simulation, step, step.contacts[contact]).fastest > 0;
+                       });
+}
+
+/// As before the blow, which the whole island then takes.
+void BlowPatches::give_up(StepData& step, std::size_t patched) {
+    const bool last = patched + 1 == patched_.size();
+    const std::size_t motions_end = last ? motions_.size() : patched_[patched + 1].first_motion;
+    for (std::size_t i = patched_[patched].first_motion; i < motions_end; ++i) {
+        const auto& [id, motion] = motions_[i];
+        step.velocity[id] = motion.velocity, step.angular_velocity[id] = motion.angular_velocity;
+    }
+    const std::size_t runs_end = last ? step.islands.runs.size() : patched_[patched + 1].first_run;
+    for (std::size_t i = patched_[patched].first_run; i < runs_end; ++i) {
+        const ContactList::Run run = step.contacts.nth_run(step.islands.runs[i]);
+        std::fill(step.hit.begin() + static_cast<std::ptrdiff_t>(run.begin),
+                  step.hit.begin() + static_cast<std::ptrdiff_t>(run.end), 0);
+    }
+    step.awaits[patched_[patched].island] = Awaits::kBlow;
+}
+
+bool BlowPatches::end(const Simulation& simulation, StepData& step) {
+    bool remain = false;
+    if (patched_.empty()) return remain;
+    step.awaits.assign(islands_, Awaits::kNothing);
+    for (std::size_t i = 0; i < patched_.size(); ++i) {
+        if (!reaches_out(simulation, step, i)) {
+            step.was_hit[patched_[i].island] = 1;
+            continue;
+        }
+        give_up(step, i);
+        remain = true;
+    }
+    Islands& islands = step.islands;
+    islands.runs.resize(runs_);
+    islands.first.resize(islands_ + 1);
+    const auto take_back = [&](auto&... lists) { (lists.resize(islands_), ...); };
+    take_back(islands.contacts, islands.coloured, islands.held, islands.conjugates,
+              islands.falling_mass, islands.first_row, step.residual, step.has_rows, step.was_hit,
+              step.pushed);
+    return remain;
+}
+
+}  // namespace tesserae

@@ -1,0 +1,157 @@
+#include "core/dynamics/stages/blow_patches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/solver/blow.hpp"
+#include "core/dynamics/solver/solver.hpp"
+#include "tests/core/dynamics/builder.hpp"
+#include "tests/core/dynamics/observed_world.hpp"
+
+namespace tesserae {
+namespace {
+
+using namespace tesserae::testing;
+
+/// A layer of touching spheres on a plane, and one that falls on the middle one.
+Bodies struck_layer(double mass, double speed, double restitution = 0) {
+    constexpr int kAcross = 7;
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0));
+    for (int x = 0; x < kAcross; ++x)
+        for (int z = 0; z < kAcross; ++z)
+            for (int w = 0; w < kAcross; ++w)
+                add(bodies, sphere_type(0.5), {x - 3.0, 0.5, z - 3.0, w - 3.0});
+    BodyType ball = sphere_type(0.5, mass);
+    ball.restitution = restitution;
+    add(bodies, ball, {0, 1.5 + 0.4 * kStep * speed, 0, 0}, {0, -speed, 0, 0});
+    return bodies;
+}
+
+/// What the first step's blows find, and they.
+struct Found {
+    Simulation simulation;
+    StepData step;
+    std::vector<std::vector<std::uint32_t>> hits = {{}};
+};
+Found before_blows(Bodies bodies) {
+    StageCopy copy(Stage::kSolveBlows);
+    World world(std::move(bodies), PhysicsSettings{});
+    world.observe(&copy);
+    world.step(kStep);
+    Found found{copy.simulation, copy.step};
+    list_blows(found.simulation, found.step, {0, found.step.contacts.size()}, found.hits[0]);
+    return found;
+}
+
+/// Solves all islands that await it.
+void solve_all(Found& found) {
+    for (std::size_t island = 0; island < found.step.islands.size(); ++island)
+        solve_blow(found.simulation, found.step, island);
+}
+
+double energy_of(const Found& found) {
+    double sum = 0;
+    for (BodyId id = 0; id < found.simulation.bodies.size(); ++id)
+        sum += twice_kinetic_energy(found.simulation, found.step, id, motion_of(found.step, id));
+    return sum;
+}
+
+TEST(BlowPatches, HaveWhatTouchesWhatIsHitAndWhatTouchesThat) {
+    Found found = before_blows(struck_layer(1, 3));
+    const auto ball = static_cast<BodyId>(found.simulation.bodies.size() - 1);
+    ASSERT_EQ(found.hits[0].size(), 1u);
+    ASSERT_EQ(found.step.islands.size(), 1u);
+    ASSERT_TRUE(found.step.islands.is_coloured(0));
+    ASSERT_GE(found.step.islands.contacts[0], kPatchedFrom);
+    BlowPatches patches;
+    patches.begin(found.simulation, found.step, found.hits);
+    const Islands& islands = found.step.islands;
+    ASSERT_EQ(islands.size(), 2u);
+    EXPECT_EQ(found.step.awaits[0], Awaits::kNothing);
+    EXPECT_EQ(found.step.awaits[1], Awaits::kPatch);
+    EXPECT_TRUE(std::is_sorted(islands.runs_in(1).begin(), islands.runs_in(1).end()));
+    // The ball, the one below it and those at most two further on along the axes, 25.
+    std::set<BodyId> bodies;
+    for (const std::uint32_t n : islands.runs_in(1)) {
+        const ContactList::Run run = found.step.contacts.nth_run(n);
+        for (const BodyId id : {run.a, run.b})
+            if (id != 0) bodies.insert(id);
+    }
+    EXPECT_EQ(bodies.size(), 26u);
+    for (const BodyId id : bodies) {
+        const Vec4 x = found.step.position[id];
+        if (id != ball) {
+            EXPECT_LT(std::abs(x[0]) + std::abs(x[2]) + std::abs(x[3]), 2.1) << id;
+        }
+    }
+    std::size_t all_between = 0;
+    for (const Contact& c : found.step.contacts)
+        all_between += (c.a == 0 || bodies.count(c.a)) && bodies.count(c.b);
+    EXPECT_EQ(islands.contacts[1], all_between);
+}
+
+TEST(BlowPatches, MoveBodiesAsTheWholeIslandDoes) {
+    for (const double restitution : {0.0, 0.6}) {
+        Found patched = before_blows(struck_layer(1, 3, restitution)), whole = patched;
+        const double energy = energy_of(patched);
+        const std::size_t hit = patched.hits[0][0];
+        BlowPatches patches;
+        patches.begin(patched.simulation, patched.step, patched.hits);
+        solve_all(patched);
+        EXPECT_FALSE(patches.end(patched.simulation, patched.step));
+        EXPECT_EQ(patched.step.islands.size(), 1u);
+        EXPECT_EQ(patched.step.islands.runs.size(), whole.step.islands.runs.size());
+        EXPECT_EQ(patched.step.was_hit, std::vector<std::uint8_t>{1});
+        EXPECT_EQ(patched.step.hit[hit], 1);
+        EXPECT_LT(energy_of(patched), energy);
+        // As often as it takes.
+        whole.simulation.settings.iterations = 1000;
+        whole.step.awaits.assign(1, Awaits::kBlow);
+        solve_all(whole);
+        for (BodyId id = 0; id < patched.simulation.bodies.size(); ++id)
+            EXPECT_LT((patched.step.velocity[id] - whole.step.velocity[id]).norm(), 0.01) << id;
+        EXPECT_NEAR(patched.step.velocity.back()[1], 3 * restitution, 0.01);
+    }
+}
+
+/// A ball of 10^4 masses drives what it hits aside.
+TEST(BlowPatches, GiveUpWhereTheyReachOut) {
+    Bodies bodies = struck_layer(1e4, 20);
+    bodies.position.back() += Vec4{0.3, -0.02, 0.2, 0.1};
+    Found found = before_blows(bodies);
+    const StepData before = found.step;
+    BlowPatches patches;
+    patches.begin(found.simulation, found.step, found.hits);
+    ASSERT_EQ(found.step.islands.size(), 2u);
+    solve_all(found);
+    EXPECT_FALSE(same_bits(found.step.velocity, before.velocity));
+    EXPECT_TRUE(patches.end(found.simulation, found.step));
+    EXPECT_TRUE(same_bits(found.step.velocity, before.velocity));
+    EXPECT_TRUE(same_bits(found.step.angular_velocity, before.angular_velocity));
+    EXPECT_EQ(found.step.hit, before.hit);
+    EXPECT_EQ(found.step.awaits, std::vector<Awaits>{Awaits::kBlow});
+    EXPECT_EQ(found.step.was_hit, before.was_hit);
+    EXPECT_EQ(found.step.islands.size(), 1u);
+}
+
+/// The whole is the cheaper then.
+TEST(BlowPatches, AreNoneWhereMuchIsHit) {
+    Bodies bodies = struck_layer(1, 3);
+    for (BodyId id = 1; id + 1 < bodies.size(); id += 9) bodies.velocity[id] = {0, -2, 0, 0};
+    Found found = before_blows(bodies);
+    EXPECT_GT(found.hits[0].size(), 30u);
+    BlowPatches patches;
+    patches.begin(found.simulation, found.step, found.hits);
+    EXPECT_EQ(found.step.islands.size(), 1u);
+    EXPECT_EQ(found.step.awaits, std::vector<Awaits>{Awaits::kBlow});
+    EXPECT_FALSE(patches.end(found.simulation, found.step));
+}
+
+}  // namespace
+}  // namespace tesserae
