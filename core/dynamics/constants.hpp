@@ -232,7 +232,7 @@ constexpr double kUnequalMasses = 2.5;
 /// step, in float to 1e-7.
 constexpr std::uint32_t kFreeColouredFrom = 1024;
 
-/// Slenderness, see slenderness(), from which on coloured islands do not round what impulses do to
+/// Slenderness, see FloatRange, from which on coloured islands do not round what impulses do to
 /// one part in 500, usual 64, that of a rod of 1 by 0.09. More, and rods that lie across each other
 /// fly apart (of 1 by 0.005, with 30 times the energy that they had); less, and boards take a tenth
 /// more memory.

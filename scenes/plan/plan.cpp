@@ -113,7 +113,7 @@ void decide_physics(const Scene& scene, Plan& plan) {
     if (plan.movable_bodies == 0)
         plan.decide("contacts", false, "", "no body can be moved by them");
     else
-        decide_solver(*scene.physics, needs, fit_floats(types), plan);
+        decide_solver(*scene.physics, needs, float_range(types).fits, plan);
 }
 
 /// What hulls take, of which equal shapes share one.

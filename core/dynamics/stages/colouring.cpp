@@ -48,26 +48,12 @@ void size_directions(ColouredIslands& coloured) {
 
 }  // namespace
 
-bool fit_floats(std::span<const TypeProperties> types) {
-    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
-    for (const TypeProperties& type : types) {
-        if (!type.movable) continue;
-        if (!(type.radius > 1e-9 && type.radius < 1e9)) return false;
-        if (slenderness(type) > 1e5) return false;
-        const int exponent = std::ilogb(type.mass);
-        least = std::min(least, exponent), most = std::max(most, exponent);
-    }
-    return most < least || most - least <= 60;
-}
-
 void Colouring::begin(const Simulation& simulation, StepData& step) {
     ColouredIslands& coloured = step.coloured;
     coloured.friction = simulation.needs.friction;
     coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
-    coloured.slender =
-        std::any_of(simulation.types.begin(), simulation.types.end(),
-                    [](const TypeProperties& type) { return slenderness(type) > kSlender; });
+    coloured.slender = simulation.floats.slender;
     coloured.first_body.assign(1, 1);
     coloured.first_colour.assign(1, 0);
     coloured.mass_unit.clear();

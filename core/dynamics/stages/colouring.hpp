@@ -1,15 +1,8 @@
 #pragma once
 
-#include <span>
-
 #include "core/dynamics/state/step_data.hpp"
 
 namespace tesserae {
-
-/// Whether masses and sizes leave room in a float for their products: masses within a factor of
-/// 2^60, bounding radii between 1e-9 and 1e9 m, slenderness() at most 1e5. Else islands of any size
-/// are solved in double.
-bool fit_floats(std::span<const TypeProperties> types);
 
 /// Colours the pairs of bodies of large islands and makes batches of them: no two pairs of a colour
 /// share a movable body, so that any number of threads may solve them at once and get the same

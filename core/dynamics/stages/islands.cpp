@@ -26,10 +26,9 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
-    const bool fits = fit_floats(simulation.types);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        if (fits && is_coloured(islands, island)) {
+        if (simulation.floats.fits && is_coloured(islands, island)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {

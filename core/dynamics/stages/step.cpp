@@ -58,6 +58,7 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
 
     Simulation simulation;
     simulation.types = type_properties(bodies);
+    simulation.floats = float_range(simulation.types);
     simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
     simulation.settings = settings;

@@ -141,6 +141,7 @@ struct Simulation {
     StepMemory memory;
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
+    FloatRange floats;                  ///< of them
     Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/algebra/twin_quaternion.hpp"
+#include "core/dynamics/constants.hpp"
 
 namespace tesserae {
 namespace {
@@ -60,6 +62,12 @@ Bivector apply(const Bivector& diagonal, const Rotor& rotor, const Bivector& b) 
     return rotate(rotor, scaled(diagonal, rotate(reverse(rotor), b)));
 }
 
+double slenderness(const TypeProperties& type) {
+    const Bivector& b = type.inverse_inertia;
+    const auto [least, most] = std::minmax({b.xy, b.xz, b.xw, b.yz, b.yw, b.zw});
+    return least > 0 ? most / least : 1;
+}
+
 }  // namespace
 
 std::vector<TypeProperties> type_properties(const Bodies& bodies) {
@@ -69,10 +77,18 @@ std::vector<TypeProperties> type_properties(const Bodies& bodies) {
     return all;
 }
 
-double slenderness(const TypeProperties& type) {
-    const Bivector& b = type.inverse_inertia;
-    const auto [least, most] = std::minmax({b.xy, b.xz, b.xw, b.yz, b.yw, b.zw});
-    return least > 0 ? most / least : 1;
+FloatRange float_range(std::span<const TypeProperties> types) {
+    FloatRange range;
+    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
+    for (const TypeProperties& type : types) {
+        range.slender |= slenderness(type) > kSlender;
+        if (!type.movable) continue;
+        range.fits &= type.radius > 1e-9 && type.radius < 1e9 && slenderness(type) <= 1e5;
+        const int exponent = std::ilogb(type.mass);
+        least = std::min(least, exponent), most = std::max(most, exponent);
+    }
+    range.fits &= most < least || most - least <= 60;
+    return range;
 }
 
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/dynamics/constants.hpp"
@@ -34,9 +35,16 @@ struct TypeProperties {
 /// @return one entry for each of bodies.types
 std::vector<TypeProperties> type_properties(const Bodies& bodies);
 
-/// The largest of a body's inverse inertias over the least, as contacts see them; 1 where these do
-/// not turn it.
-double slenderness(const TypeProperties& type);
+/// Of all of a scene's bodies, for islands that are solved in float.
+struct FloatRange {
+    /// Masses and sizes leave room in a float for their products: masses within a factor of 2^60,
+    /// bounding radii between 1e-9 and 1e9 m, slenderness at most 1e5. Else islands of any size are
+    /// solved in double. Slenderness is the largest of a body's inverse inertias over the least, as
+    /// contacts see them; 1 where these do not turn it.
+    bool fits = true;
+    bool slender = false;  ///< any body is: see kSlender
+};
+FloatRange float_range(std::span<const TypeProperties> types);
 
 /// From a type's principal axes to the world.
 inline Rotor principal_rotor(const TypeProperties& type, const Rotor& rotor) {
