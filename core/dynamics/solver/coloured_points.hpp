@@ -42,9 +42,10 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
     put(v - along * c.normal + slip_by_turning(simulation, step, c, stage.cause),
         points.velocity[lane]);
-    put(impulse.tangent() / stage.mass_unit, points.impulse[lane]);
+    const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
+    put(per_mass_unit * impulse.tangent(), points.impulse[lane]);
     put({targets.solve - along, targets.relax - along, targets.keep,
-         impulse.normal / stage.mass_unit},
+         per_mass_unit * impulse.normal},
         points.along[lane]);
 }
 

@@ -16,7 +16,7 @@ Approach approach_of(const Simulation& simulation, const StepData& step, const C
     const double half_size = std::min(a.slop, b.slop) / kSlop;
     Approach approach;
     approach.e = std::max(a.restitution, b.restitution);
-    approach.slowest = a.falls || b.falls ? kRestitutionKicks * step.h * gravity.norm() : 0;
+    approach.slowest = a.falls || b.falls ? kRestitutionKicks * step.kick : 0;
     if (approach.e == 0) approach.slowest = std::max(approach.slowest, kStill * half_size);
     approach.g = (a.falls - b.falls) * contact.normal.dot(gravity);
     approach.through = 0.5 * half_size * approach.e * approach.e;  // as is the energy at stake
@@ -83,8 +83,7 @@ Parting Parting::at(const StepData& step, Range contacts) const {
 }
 
 Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island) {
-    return {step.pushed[island] != Push::kNone,
-            step.islands.falling_mass[island] * (step.h * simulation.settings.gravity.norm())};
+    return {step.pushed[island] != Push::kNone, step.islands.falling_mass[island] * step.kick};
 }
 
 PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
@@ -95,7 +94,7 @@ PairTargets::PairTargets(const Simulation& simulation, const StepData& step, con
       h_(step.h),
       slop_(slop_of(simulation, contact.a, contact.b)),
       // Acts on the second half of the sub-step only, so that it has to be twice as large.
-      fastest_(kLargestPush / kSlop * slop_ + h_ * simulation.settings.gravity.norm()),
+      fastest_(kLargestPush / kSlop * slop_ + step.kick),
       bias_(parting.pushed
                 ? std::min(fastest_, parting.part * (kBiasPart / h_ * kPushedBias * slop_))
                 : fastest_) {
@@ -200,8 +199,7 @@ bool is_stopped(const Simulation& simulation, const StepData& step, std::size_t 
             of_run += step.impulses[i].normal * normal + step.impulses[i].tangent();
         all += a ? Vec4(-of_run) : of_run;
     }
-    const double kick = step.h * simulation.settings.gravity.norm();
-    return all.norm() > kRecalledStop * step.islands.falling_mass[island] * kick;
+    return all.norm() > kRecalledStop * step.islands.falling_mass[island] * step.kick;
 }
 
 BlowFilter::BlowFilter(const Simulation& simulation, const StepData& step, const Contact& c)

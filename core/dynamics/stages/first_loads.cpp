@@ -115,7 +115,6 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
     using Vec5 = Eigen::Matrix<double, 5, 1>;
     number_loads(simulation);
     const Vec4 up = up_of(simulation);
-    const double kick = step.h * simulation.settings.gravity.norm();
     for (std::size_t end = supports_.size(); end > 0;) {
         std::size_t begin = end - 1;
         const BodyId body = supports_[begin].upper;
@@ -124,7 +123,7 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
         end = begin;
 
         const TypeProperties& type = simulation.type_of(body);
-        const double load = kick * type.mass + above_[load_[body]].impulse;
+        const double load = step.kick * type.mass + above_[load_[body]].impulse;
         // In radii of the body, so that sizes are alike.
         const double unit = 1 / type.radius;
         Eigen::Matrix<double, 5, 5> squares = Eigen::Matrix<double, 5, 5>::Zero();

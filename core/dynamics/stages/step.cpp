@@ -71,6 +71,7 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     const std::size_t count = simulation.bodies.size();
     step.dt = dt;
     step.h = dt / simulation.settings.substeps;
+    step.kick = step.h * simulation.settings.gravity.norm();
     step.substep = 0;
     step.asleep = simulation.memory.asleep;
     if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);

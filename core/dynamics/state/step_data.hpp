@@ -152,6 +152,7 @@ struct Simulation {
 struct StepData {
     double dt = 0;    ///< [s]
     double h = 0;     ///< length of a sub-step [s]
+    double kick = 0;  ///< what gravity adds to a speed in it [m/s]
     int substep = 0;  ///< 0 to settings.substeps - 1
 
     std::vector<Vec4> position;  ///< of every body, on its way from the last state to the next
@@ -245,6 +246,7 @@ inline bool is_asleep(const StepData& step, BodyId id) {
 
 /// Moves at a velocity of its own, which contacts do not change.
 inline bool is_driven(const Simulation& simulation, BodyId id) {
+    if (!simulation.type_of(id).fixed) return false;
     const Bodies& bodies = simulation.bodies;
     const BodyType& type = bodies.type_of(id);
     return (type.fixed_position && bodies.velocity[id] != Vec4::Zero()) ||

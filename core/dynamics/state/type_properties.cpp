@@ -30,6 +30,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.rolling_friction = type.rolling_friction;
     p.restitution = type.restitution;
     p.slop = std::numeric_limits<double>::infinity();
+    p.fixed = type.fixed_position || type.fixed_rotation;
     p.bounded = is_bounded(type.shape);
     if (!p.bounded) return p;
 

@@ -22,6 +22,7 @@ struct TypeProperties {
     bool bounded = false;
     bool flat = false;     ///< has nothing but flat faces
     bool movable = false;  ///< contacts can change its motion
+    bool fixed = false;    ///< its position or its rotation is
     bool falls = false;    ///< gravity acts on it
     double radius = 0;     ///< of the bounding sphere about the centre [m]
     double arm = 0;        ///< surface speed towards another body per angular speed, at most [m];
