@@ -88,7 +88,7 @@ class ColouredIsland {
                  step,
                  all_.mass_unit[place_],
                  cause,
-                 parting_of(simulation, step, island),
+                 parting_of(step, island),
                  friction,
                  step.has_rows[island] != 0} {}
 

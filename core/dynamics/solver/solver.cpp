@@ -154,7 +154,7 @@ void for_each_row(StepData& step, std::size_t island, const Visit& visit) {
 
 void start_rows(const Simulation& simulation, StepData& step, std::size_t island, Cause cause) {
     const bool made = step.has_rows[island];
-    const Parting parting = parting_of(simulation, step, island);
+    const Parting parting = parting_of(step, island);
     const auto start = [&](std::size_t place, const Parting& of_pair, ContactRow& row) {
         const Contact contact = step.contacts[place];
         if (!made) row = make_row(simulation, step, contact);

@@ -82,7 +82,7 @@ Parting Parting::at(const StepData& step, Range contacts) const {
     return of;
 }
 
-Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island) {
+Parting parting_of(const StepData& step, std::size_t island) {
     return {step.pushed[island] != Push::kNone, step.islands.falling_mass[island] * step.kick};
 }
 

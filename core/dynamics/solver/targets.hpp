@@ -41,7 +41,7 @@ struct Parting {
     /// there, until they burst apart.
     Parting at(const StepData& step, Range contacts) const;
 };
-Parting parting_of(const Simulation& simulation, const StepData& step, std::size_t island);
+Parting parting_of(const StepData& step, std::size_t island);
 
 /// The targets of the contacts of two bodies that have one normal.
 class PairTargets {
