@@ -42,6 +42,7 @@ void BlowPatches::begin(const Simulation& simulation, StepData& step,
             hit_[a] = hit_[b] = 1;
         }
     near_.assign(step.coloured.bodies.size(), 0);
+    next_.resize(near_.size());
     parent_.resize(near_.size());
     for (std::size_t island = 0; island < islands_; ++island)
         if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom)
@@ -64,13 +65,14 @@ std::size_t BlowPatches::mark_hit(const StepData& step, Range bodies) {
 
 /// By the bodies that touch those that are near.
 void BlowPatches::widen(const StepData& step, std::size_t place) {
-    next_ = near_;
+    const auto [begin, end] = bodies_of(step.coloured, place);
+    std::copy(&near_[begin], &near_[0] + end, &next_[begin]);
     for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k, std::size_t) {
         if (!near_[batch.a[k]] && !near_[batch.b[k]]) return;
+        // The first place stands for all that do not move: it is not near.
         next_[batch.a[k]] = next_[batch.b[k]] = 1;
     });
-    next_[0] = 0;  // stands for all that do not move
-    near_.swap(next_);
+    std::copy(&next_[begin], &next_[0] + end, &near_[begin]);
 }
 
 std::uint32_t BlowPatches::root_of(std::uint32_t place) {
