@@ -79,8 +79,8 @@ TEST_F(Golden, LargeIslandsMoveAsEver) {
     };
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2"};
-    expect("pile", 1000, 200, {}, "035e9d2d28b781ed0117c0488f992ab8");
-    expect("pile", 1000, 200, soft, "c4ebe01b309d2ea4c1df545fa426f66d");
+    expect("pile", 1000, 200, {}, "0a7e5446bd8333372c9f10652e7d552c");
+    expect("pile", 1000, 200, soft, "8e2ab0a9bfd28460204e5ceb98fa9f23");
     expect("pyramid", 200, 60, {}, "ab7d174bf452b07d45a08ae05f4e4b69");
     expect("pyramid", 200, 60, soft, "d91699c5d26d1bfd3d0d5f9d24d89866");
 }

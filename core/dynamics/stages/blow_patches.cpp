@@ -9,17 +9,17 @@
 namespace tesserae {
 namespace {
 
-/// Calls visit(batch, lane, cost of one of its contacts) for all pairs of a coloured island.
+/// Calls visit(batch, lane) for all pairs of a coloured island.
 template <class Visit>
 void for_pairs(const ColouredIslands& coloured, std::size_t place, const Visit& visit) {
-    const auto visit_all = [&](const std::vector<Batch>& all, BatchRange range, std::size_t cost) {
+    const auto visit_all = [&](const std::vector<Batch>& all, BatchRange range) {
         for (std::uint32_t i = range.begin; i < range.end; ++i)
-            for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k) visit(all[i], k, cost);
+            for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k) visit(all[i], k);
     };
     for (std::uint32_t i = coloured.first_colour[place]; i < coloured.first_colour[place + 1];
          ++i) {
-        visit_all(coloured.round, coloured.colours[i].round, kRoundPatchCost);
-        visit_all(coloured.general, coloured.colours[i].general, kPatchCost);
+        visit_all(coloured.round, coloured.colours[i].round);
+        visit_all(coloured.general, coloured.colours[i].general);
     }
 }
 
@@ -67,7 +67,7 @@ std::size_t BlowPatches::mark_hit(const StepData& step, Range bodies) {
 void BlowPatches::widen(const StepData& step, std::size_t place) {
     const auto [begin, end] = bodies_of(step.coloured, place);
     std::copy(&near_[begin], &near_[0] + end, &next_[begin]);
-    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k, std::size_t) {
+    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k) {
         if (!near_[batch.a[k]] && !near_[batch.b[k]]) return;
         // The first place stands for all that do not move: it is not near.
         next_[batch.a[k]] = next_[batch.b[k]] = 1;
@@ -81,15 +81,15 @@ std::uint32_t BlowPatches::root_of(std::uint32_t place) {
 }
 
 /// Pairs of bodies that are near, in pairs_, and what touches the others, in rim_.
-/// @return what the former cost
+/// @return how many contacts the former have
 std::size_t BlowPatches::join(const StepData& step, std::size_t place) {
     const Range bodies = bodies_of(step.coloured, place);
     std::iota(parent_.begin() + static_cast<std::ptrdiff_t>(bodies.begin),
               parent_.begin() + static_cast<std::ptrdiff_t>(bodies.end),
               static_cast<std::uint32_t>(bodies.begin));
     pairs_.clear();
-    std::size_t cost = 0;
-    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k, std::size_t of_each) {
+    std::size_t contacts = 0;
+    for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k) {
         const std::uint32_t a = batch.a[k], b = batch.b[k];
         if (!near_[a] && !near_[b]) return;
         if ((a != 0 && !near_[a]) || (b != 0 && !near_[b])) {
@@ -97,14 +97,14 @@ std::size_t BlowPatches::join(const StepData& step, std::size_t place) {
                 rim_.push_back(batch.contact[k] + p);
             return;
         }
-        cost += of_each * batch.points[k];
+        contacts += batch.points[k];
         pairs_.push_back({a != 0 ? a : b, step.contacts.run_of(batch.contact[k])});
         if (a == 0 || b == 0) return;
         const std::uint32_t p = root_of(a), q = root_of(b);
         parent_[std::max(p, q)] = std::min(p, q);
     });
     for (Pair& pair : pairs_) pair.patch = root_of(pair.patch);
-    return cost;
+    return contacts;
 }
 
 /// A patch, behind the islands that there are.
@@ -140,10 +140,10 @@ void BlowPatches::add_patches(StepData& step, std::size_t island) {
     const std::size_t place = step.islands.coloured[island];
     const Range bodies = bodies_of(step.coloured, place);
     const std::size_t hit = mark_hit(step, bodies);
-    if (hit == 0 || hit * kRoundPatchCost > bodies.end - bodies.begin) return;
+    if (hit == 0 || hit * kPatchCost > bodies.end - bodies.begin) return;
     for (int i = 0; i < kPatchWidth; ++i) widen(step, place);
     const Patched patched = {island, motions_.size(), rim_.size(), step.islands.runs.size()};
-    if (join(step, place) > step.islands.contacts[island]) {
+    if (kPatchCost * join(step, place) > step.islands.contacts[island]) {
         rim_.resize(patched.first_rim);
         return;
     }

@@ -20,13 +20,13 @@ using namespace tesserae::testing;
 
 /// A layer of touching spheres on a plane, and one that falls on the middle one.
 Bodies struck_layer(double mass, double speed, double restitution = 0) {
-    constexpr int kAcross = 7;
+    constexpr int kAcross = 11;
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0));
     for (int x = 0; x < kAcross; ++x)
         for (int z = 0; z < kAcross; ++z)
             for (int w = 0; w < kAcross; ++w)
-                add(bodies, sphere_type(0.5), {x - 3.0, 0.5, z - 3.0, w - 3.0});
+                add(bodies, sphere_type(0.5), {x - 5.0, 0.5, z - 5.0, w - 5.0});
     BodyType ball = sphere_type(0.5, mass);
     ball.restitution = restitution;
     add(bodies, ball, {0, 1.5 + 0.4 * kStep * speed, 0, 0}, {0, -speed, 0, 0});
