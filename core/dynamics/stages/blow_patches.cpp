@@ -32,7 +32,7 @@ Range bodies_of(const ColouredIslands& coloured, std::size_t place) {
 void BlowPatches::begin(const Simulation& simulation, StepData& step,
                         std::span<const std::vector<std::uint32_t>> hits) {
     Islands& islands = step.islands;
-    islands_ = islands.size(), runs_ = islands.runs.size();
+    islands_ = islands.size(), runs_ = islands.runs.size(), rows_ = step.rows.size();
     step.awaits.assign(islands_, Awaits::kBlow);
     patched_.clear(), motions_.clear(), rim_.clear();
     hit_.assign(simulation.bodies.size(), 0);
@@ -48,11 +48,9 @@ void BlowPatches::begin(const Simulation& simulation, StepData& step,
         if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom)
             add_patches(step, island);
     if (patched_.empty()) return;
-    const std::size_t rows = islands.first_row.back() + islands.contacts.back();
-    step.rows.resize(std::max(step.rows.size(), rows));
-    if (simulation.needs.rolling)
-        step.rolling_rows.resize(std::max(step.rolling_rows.size(), rows));
-    step.bodies_of_rows.resize(std::max(step.bodies_of_rows.size(), 2 * rows));
+    step.rows.resize(rows_);
+    if (simulation.needs.rolling) step.rolling_rows.resize(rows_);
+    step.bodies_of_rows.resize(2 * rows_);
 }
 
 /// @return how many of the bodies (places in ColouredIslands::bodies) are hit
@@ -66,13 +64,13 @@ std::size_t BlowPatches::mark_hit(const StepData& step, Range bodies) {
 /// By the bodies that touch those that are near.
 void BlowPatches::widen(const StepData& step, std::size_t place) {
     const auto [begin, end] = bodies_of(step.coloured, place);
-    std::copy(&near_[begin], &near_[0] + end, &next_[begin]);
+    std::copy(near_.data() + begin, near_.data() + end, next_.data() + begin);
     for_pairs(step.coloured, place, [&](const Batch& batch, std::size_t k) {
         if (!near_[batch.a[k]] && !near_[batch.b[k]]) return;
         // The first place stands for all that do not move: it is not near.
         next_[batch.a[k]] = next_[batch.b[k]] = 1;
     });
-    std::copy(&next_[begin], &next_[0] + end, &near_[begin]);
+    std::copy(next_.data() + begin, next_.data() + end, near_.data() + begin);
 }
 
 std::uint32_t BlowPatches::root_of(std::uint32_t place) {
@@ -110,13 +108,6 @@ std::size_t BlowPatches::join(const StepData& step, std::size_t place) {
 /// A patch, behind the islands that there are.
 void BlowPatches::add_island(StepData& step, std::span<const Pair> pairs) {
     Islands& islands = step.islands;
-    const std::size_t last = islands.size() - 1;
-    std::uint32_t first_row = islands.first_row[last];
-    // The first one of all begins where the rows of the islands that are not coloured end.
-    if (last < islands_)
-        first_row = static_cast<std::uint32_t>(step.rows.size());
-    else
-        first_row += islands.contacts[last];
     std::uint32_t contacts = 0;
     for (const Pair& pair : pairs) {
         islands.runs.push_back(pair.run);
@@ -128,7 +119,8 @@ void BlowPatches::add_island(StepData& step, std::span<const Pair> pairs) {
     islands.held.push_back(1);
     islands.conjugates.push_back(0);
     islands.falling_mass.push_back(0);
-    islands.first_row.push_back(first_row);
+    islands.first_row.push_back(static_cast<std::uint32_t>(rows_));
+    rows_ += contacts;
     step.residual.push_back(0);
     step.has_rows.push_back(0);
     step.was_hit.push_back(0);
@@ -142,9 +134,10 @@ void BlowPatches::add_patches(StepData& step, std::size_t island) {
     const std::size_t hit = mark_hit(step, bodies);
     if (hit == 0 || hit * kPatchCost > bodies.end - bodies.begin) return;
     for (int i = 0; i < kPatchWidth; ++i) widen(step, place);
-    const Patched patched = {island, motions_.size(), rim_.size(), step.islands.runs.size()};
+    Patched patched = {
+        island, {motions_.size(), 0}, {rim_.size(), 0}, {step.islands.runs.size(), 0}};
     if (kPatchCost * join(step, place) > step.islands.contacts[island]) {
-        rim_.resize(patched.first_rim);
+        rim_.resize(patched.rim.begin);
         return;
     }
     std::sort(pairs_.begin(), pairs_.end());
@@ -159,50 +152,45 @@ void BlowPatches::add_patches(StepData& step, std::size_t island) {
         const BodyId id = step.coloured.bodies[i];
         if (near_[i]) motions_.push_back({id, motion_of(step, id)});
     }
+    patched.motions.end = motions_.size(), patched.rim.end = rim_.size();
+    patched.runs.end = step.islands.runs.size();
     patched_.push_back(patched);
     step.awaits[island] = Awaits::kNothing;
 }
 
 /// Whether anything that is not in a patch of the island is hit now.
 bool BlowPatches::reaches_out(const Simulation& simulation, const StepData& step,
-                              std::size_t patched) const {
-    const std::size_t begin = patched_[patched].first_rim;
-    const std::size_t end =
-        patched + 1 < patched_.size() ? patched_[patched + 1].first_rim : rim_.size();
-    return std::any_of(rim_.begin() + static_cast<std::ptrdiff_t>(begin),
-                       rim_.begin() + static_cast<std::ptrdiff_t>(end), [&](std::uint32_t contact) {
+                              const Patched& patched) const {
+    return std::any_of(rim_.data() + patched.rim.begin, rim_.data() + patched.rim.end,
+                       [&](std::uint32_t contact) {
                            return blow_of(simulation, step, step.contacts[contact]).fastest > 0;
                        });
 }
 
 /// As before the blow, which the whole island then takes.
-void BlowPatches::give_up(StepData& step, std::size_t patched) {
-    const bool last = patched + 1 == patched_.size();
-    const std::size_t motions_end = last ? motions_.size() : patched_[patched + 1].first_motion;
-    for (std::size_t i = patched_[patched].first_motion; i < motions_end; ++i) {
+void BlowPatches::give_up(StepData& step, const Patched& patched) const {
+    for (std::size_t i = patched.motions.begin; i < patched.motions.end; ++i) {
         const auto& [id, motion] = motions_[i];
         step.velocity[id] = motion.velocity, step.angular_velocity[id] = motion.angular_velocity;
     }
-    const std::size_t runs_end = last ? step.islands.runs.size() : patched_[patched + 1].first_run;
-    for (std::size_t i = patched_[patched].first_run; i < runs_end; ++i) {
+    for (std::size_t i = patched.runs.begin; i < patched.runs.end; ++i) {
         const ContactList::Run run = step.contacts.nth_run(step.islands.runs[i]);
-        std::fill(step.hit.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                  step.hit.begin() + static_cast<std::ptrdiff_t>(run.end), 0);
+        std::fill(step.hit.data() + run.begin, step.hit.data() + run.end, 0);
     }
-    step.awaits[patched_[patched].island] = Awaits::kBlow;
+    step.awaits[patched.island] = Awaits::kBlow;
 }
 
 bool BlowPatches::end(const Simulation& simulation, StepData& step) {
     bool remain = false;
     if (patched_.empty()) return remain;
     step.awaits.assign(islands_, Awaits::kNothing);
-    for (std::size_t i = 0; i < patched_.size(); ++i) {
-        if (!reaches_out(simulation, step, i)) {
-            step.was_hit[patched_[i].island] = 1;
-            continue;
+    for (const Patched& patched : patched_) {
+        if (reaches_out(simulation, step, patched)) {
+            give_up(step, patched);
+            remain = true;
+        } else {
+            step.was_hit[patched.island] = 1;
         }
-        give_up(step, i);
-        remain = true;
     }
     Islands& islands = step.islands;
     islands.runs.resize(runs_);

@@ -26,14 +26,13 @@ class BlowPatches {
     /// Of one island.
     struct Patched {
         std::size_t island;
-        std::size_t first_motion, first_rim,
-            first_run;  ///< in motions_, rim_ and step.islands.runs
+        Range motions, rim, runs;  ///< in motions_, rim_ and step.islands.runs
     };
     struct Motion {
         BodyId id;
         BodyMotion motion;
     };
-    /// Lanes of batches.
+    /// A run of contacts of two bodies in a patch.
     struct Pair {
         std::uint32_t patch, run;
 
@@ -45,8 +44,9 @@ class BlowPatches {
     void widen(const StepData& step, std::size_t place);
     std::size_t join(const StepData& step, std::size_t place);
     void add_island(StepData& step, std::span<const Pair> pairs);
-    bool reaches_out(const Simulation& simulation, const StepData& step, std::size_t patched) const;
-    void give_up(StepData& step, std::size_t patched);
+    bool reaches_out(const Simulation& simulation, const StepData& step,
+                     const Patched& patched) const;
+    void give_up(StepData& step, const Patched& patched) const;
     std::uint32_t root_of(std::uint32_t place);
 
     std::vector<std::uint8_t> hit_;          ///< of every body
@@ -57,6 +57,7 @@ class BlowPatches {
     std::vector<Motion> motions_;     ///< before the blow, of the bodies in patches
     std::vector<Patched> patched_;
     std::size_t islands_ = 0, runs_ = 0;  ///< without the patches
+    std::size_t rows_ = 0;                ///< with them
 };
 
 }  // namespace tesserae

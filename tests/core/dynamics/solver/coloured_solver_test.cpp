@@ -6,174 +6,18 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <span>
 #include <utility>
 
 #include "core/dynamics/stages/motion.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
+#include "tests/core/dynamics/solver/random_island.hpp"
 
 namespace tesserae {
 namespace {
 
 using namespace testing;
-
-using Generator = std::mt19937_64;
-
-Bivector random_bivector(Generator& random) {
-    // One draw after the other: the order of a call's arguments is the compiler's.
-    const Vec4 a = random_vector(random, 1), b = random_vector(random, 1);
-    const Vec4 c = random_vector(random, 1), d = random_vector(random, 1);
-    return wedge(a, b) + wedge(c, d);
-}
-
-PhysicsSettings settings_of(Solver solver, int iterations) {
-    PhysicsSettings settings;
-    settings.solver = solver;
-    settings.iterations = iterations;
-    settings.tolerance = 0;
-    return settings;
-}
-
-/// A sub-step before its islands are solved.
-struct Unsolved {
-    Simulation simulation;
-    StepData step;
-};
-
-/// Bodies of all shapes that move at random and touch at random, one to eight points a pair, body 1
-/// all others: so many pairs that some are left over. Boxes are `thinnest` along y. Two bodies do
-/// not move, two only turn.
-Unsolved random_island(Solver solver, double friction, bool spheres_only, double rolling = 0,
-                       double thinnest = 0.5) {
-    Generator random(3);
-    Bodies bodies;
-    constexpr BodyId kCount = 200;
-    for (BodyId id = 0; id < kCount; ++id) {
-        BodyType type = sphere_type(0.5, 1.0 + id % 5);
-        if (!spheres_only && id % 4 == 1)
-            type = box_type({1, thinnest, 1.4 * thinnest, 1.8 * thinnest}, 2);
-        if (!spheres_only && id % 4 == 2) type = capsule_type(0.3, 1, 3);
-        if (id % 50 == 7) type.fixed_position = type.fixed_rotation = true;
-        if (id % 50 == 8) type.fixed_position = true;
-        type.friction = friction * (0.5 + 0.01 * id);
-        type.rolling_friction = id % 7 == 0 ? rolling : 0;
-        type.restitution = id % 3 == 0 ? 0.5 : 0;
-        const Vec4 place = random_vector(random, 3), velocity = random_vector(random, 1);
-        const Bivector omega = random_bivector(random), turn = random_bivector(random);
-        add(bodies, type, place, velocity, omega, exp(turn));
-    }
-    Unsolved world{make_simulation(bodies, settings_of(solver, 5)), {}};
-    begin_step(world.simulation, world.step, kStep);
-    advance_first_half(world.simulation, world.step, {0, kCount});
-    for (BodyId a = 0; a < kCount; ++a)
-        for (BodyId b = a + 1; b < kCount; ++b) {
-            if (a != 1 && random() % 40 > 0) continue;
-            if (!bodies.is_movable(a) && !bodies.is_movable(b)) continue;
-            Contact contact;
-            contact.a = a, contact.b = b;
-            contact.normal = random_vector(random, 1).normalized();
-            const std::uint64_t points = spheres_only ? 1 : 1 + random() % 8;
-            for (std::uint32_t i = 0; i < points; ++i) {
-                contact.feature = i;
-                contact.separation = 1e-3 * random_vector(random, 1)[0] - 1e-3;
-                contact.point = world.step.position[a] + random_vector(random, 0.7);
-                world.step.contacts.push_back(contact);
-                world.step.impulses.push_back(contact_impulse(
-                    std::max(0.0, random_vector(random, 0.01)[0]), random_vector(random, 0.01)));
-                world.step.hit.push_back(0);
-            }
-        }
-    if (world.simulation.needs.rolling)
-        for (const ContactImpulse& impulse : world.step.impulses)
-            world.step.angular_impulses.push_back(impulse.normal * random_bivector(random));
-    IslandBuilder(1).build(world.simulation, world.step);
-    return world;
-}
-
-/// Pairs of batches that are swept at once in sixteen lanes, for each number of rows.
-std::array<int, kManifoldPoints + 1> count_twos(const ColouredIslands& coloured) {
-    std::array<int, kManifoldPoints + 1> twos = {};
-    const auto count = [&](const std::vector<Batch>& all, BatchRange range) {
-        largest_of_twos(all, range, false, [&](BatchRange some) {
-            twos[all[some.begin].rows] += some.end - some.begin == 2;
-            return 0;
-        });
-    };
-    for (const auto& [round, general] :
-         std::span(coloured.colours).first(coloured.colours.size() - 1)) {
-        count(coloured.round, round);
-        count(coloured.general, general);
-    }
-    return twos;
-}
-
-struct LanesCase {
-    Solver solver;
-    bool spheres_only;
-    double friction, rolling, thinnest;
-};
-
-/// Blow, load and relaxation.
-Unsolved solved_with(Unsolved world, LaneCount lanes) {
-    const Simulation& simulation = world.simulation;
-    solve_coloured_blow(simulation, world.step, 0, OneThread{}, lanes);
-    solve_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
-    advance_second_half(simulation, world.step, {0, simulation.bodies.size()});
-    relax_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
-    return world;
-}
-
-void expect_the_same_bits_with_all_lanes(const LanesCase& of) {
-    const Unsolved island =
-        random_island(of.solver, of.friction, of.spheres_only, of.rolling, of.thinnest);
-    ASSERT_EQ(island.step.islands.size(), 1u);
-    const ColouredIslands& coloured = island.step.coloured;
-    const BatchRange& many =
-        of.spheres_only ? coloured.colours.back().round : coloured.colours.back().general;
-    ASSERT_GT(many.end - many.begin, 4u);
-    EXPECT_EQ(coloured.round_friction.empty(), of.friction == 0);
-    EXPECT_EQ(coloured.round_rolling.empty(), of.rolling == 0);
-    EXPECT_EQ(coloured.inverse_inertias.empty(), of.spheres_only);
-    EXPECT_EQ(coloured.slender, of.thinnest < 0.2);
-    const auto twos = count_twos(coloured);
-    EXPECT_GT(twos[1], of.spheres_only ? 20 : 0);
-    EXPECT_GT(twos[8], of.spheres_only ? -1 : 1);
-    const Unsolved one = solved_with(island, LaneCount::kOne);
-    EXPECT_GT(std::count(one.step.hit.begin(), one.step.hit.end(), 1), 50);
-    EXPECT_GT(one.step.residual[0], 0);
-    double normal = 0, tangent = 0;
-    for (const ContactImpulse& p : one.step.impulses)
-        normal += p.normal, tangent += p.tangent().norm();
-    EXPECT_GT(normal, 1) << "nothing was solved";
-    EXPECT_EQ(tangent > 0, of.friction > 0);
-    EXPECT_FALSE(same_bits(one.step.velocity, one.simulation.bodies.velocity));
-    for (const LaneCount lanes : {LaneCount::kEight, LaneCount::kSixteen}) {
-        if (lanes > most_lanes()) continue;
-        const Unsolved many_lanes = solved_with(island, lanes);
-        EXPECT_TRUE(same_bits(one.step.velocity, many_lanes.step.velocity));
-        EXPECT_TRUE(same_bits(one.step.angular_velocity, many_lanes.step.angular_velocity));
-        EXPECT_EQ(one.step.residual, many_lanes.step.residual);
-        EXPECT_EQ(one.step.hit, many_lanes.step.hit);
-        EXPECT_EQ(one.step.angular_impulses, many_lanes.step.angular_impulses);
-        for (std::size_t i = 0; i < one.step.impulses.size(); ++i) {
-            ASSERT_EQ(one.step.impulses[i].normal, many_lanes.step.impulses[i].normal);
-            ASSERT_EQ(one.step.impulses[i].slope, many_lanes.step.impulses[i].slope);
-        }
-    }
-}
-
-TEST(ColouredSolver, HasTheSameBitsWithOneEightAndSixteenLanes) {
-    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
-        // Up to 0.75 there are conjugate directions.
-        for (const auto& [friction, rolling] :
-             {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.7, 0.0}, {0.7, 0.1}}) {
-            expect_the_same_bits_with_all_lanes({solver, true, friction, rolling, 0.5});
-            for (const double thinnest : {0.5, 0.05})
-                expect_the_same_bits_with_all_lanes({solver, false, friction, rolling, thinnest});
-        }
-}
 
 /// Of what is not 0.
 struct Sizes {
