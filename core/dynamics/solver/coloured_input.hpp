@@ -10,26 +10,35 @@ namespace tesserae::lanes {
 /// Four floats of each lane, as they are put into rows.
 using Fours = std::array<std::array<float, 4>, kLanes>;
 
-/// A contact of each lane's round bodies.
-struct alignas(32) EightPoints {
-    Fours normal = {}, r_a = {}, r_b = {};
-    Fours velocity = {};  ///< relative, of the start
-    Fours impulse = {};   ///< the tangent one, to start from
-    Fours along = {};     ///< target, relax target, keep, normal impulse
+/// What slip_by_turning() is of; where one body's turning counts whatever the other's is, it is
+/// that of both.
+struct EightTurning {
+    Fours a, b;     ///< angular velocities: xy xz xw yz
+    Fours last;     ///< yw zw of a, of b
+    Fours against;  ///< how b moves against a, before gravity
 };
 
-/// A pair of each lane and its points, of any bodies.
+/// A contact of each lane's round bodies. All zero where a lane has none.
+struct alignas(32) EightPoints {
+    Fours normal, r_a, r_b;
+    Fours velocity;  ///< relative, of the start
+    Fours impulse;   ///< the tangent one, to start from
+    Fours along;     ///< target, relax target, keep, normal impulse
+    EightTurning turning;
+};
+
+/// A pair of each lane and its points, of any bodies. All zero where a lane has no pair or point.
 struct alignas(32) EightPairs {
     struct Points {
-        Fours place = {};  ///< from the centre
-        Fours impulse = {}, along = {};
+        Fours place;  ///< from the centre
+        Fours impulse, along;
     };
-    Fours normal = {};
-    Fours centre_a = {}, centre_b = {};  ///< from the bodies' centres
-    Fours velocity = {};                 ///< of b against a at the centre, at the start
-    std::array<Eight, 6> turning = {};   ///< likewise
-    Eight rounding;                      ///< see least_response()
-    std::array<Points, kManifoldPoints> points = {};
+    Fours normal;
+    Fours centre_a, centre_b;      ///< from the bodies' centres
+    Fours velocity;                ///< of b against a at the centre, at the start
+    std::array<Eight, 6> turning;  ///< likewise
+    Eight rounding;                ///< see least_response()
+    std::array<Points, kManifoldPoints> points;
 };
 
 template <class F>

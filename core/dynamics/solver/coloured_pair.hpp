@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/dynamics/solver/lanes.hpp"
+#include "core/dynamics/solver/lane_bodies.hpp"
 #include "core/dynamics/state/coloured_rows.hpp"
 
 // The bodies of a pair that is not round, lane by lane, and the frame of its contacts.

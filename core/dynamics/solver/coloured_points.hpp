@@ -24,6 +24,43 @@ inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
 }
 
 /// Of a body that contacts do not move the offset is left out: it may be too large for a float.
+inline void put_offset(const Simulation& simulation, BodyId body, const Vec4& offset,
+                       std::array<float, 4>& to) {
+    put(simulation.type_of(body).movable ? offset : Vec4(Vec4::Zero()), to);
+}
+
+/// Whether each lane has as many points as rows: pairs of more come first.
+inline bool is_full(const Batch& batch) { return batch.points[kLanes - 1] == batch.rows; }
+
+/// Colours are made of pairs from anywhere: what they are made from is fetched ahead, or most of
+/// the time goes by in waiting for it. Of the batch after the next one that is what its contacts
+/// are, of the next one, how its bodies move. Inlined: a call of what does nothing else would be
+/// left out.
+[[gnu::always_inline]] inline void prefetch(const ColouredStage& stage,
+                                            const std::vector<Batch>& batches,
+                                            std::uint32_t index) {
+    const StepData& step = stage.step;
+    const auto fetch = [](const auto& item) __attribute__((always_inline)) {
+        const auto* const bytes = reinterpret_cast<const char*>(&item);
+        __builtin_prefetch(bytes);
+        __builtin_prefetch(bytes + sizeof item - 1);
+    };
+    if (index + 2 < batches.size())
+        for (const std::uint32_t contact : batches[index + 2].contact) {
+            step.contacts.prefetch(contact);
+            fetch(step.impulses[contact]);
+        }
+    if (index + 1 == batches.size()) return;
+    for (const std::uint32_t contact : batches[index + 1].contact) {
+        const auto [a, b] = step.contacts.pair(contact);
+        for (const BodyId id : {a, b}) {
+            fetch(step.position[id]);
+            fetch(step.velocity[id]);
+            fetch(step.angular_velocity[id]);
+        }
+    }
+}
+
 inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                       EightPoints& points) {
     const Simulation& simulation = stage.simulation;
@@ -38,15 +75,46 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
         PairTargets(simulation, step, c, stage.cause, stage.parting.at(step, {index, index + 1}))
             .at(c.separation, along);
     put(c.normal, points.normal[lane]);
-    if (simulation.type_of(c.a).movable) put(r_a, points.r_a[lane]);
-    if (simulation.type_of(c.b).movable) put(r_b, points.r_b[lane]);
-    put(v - along * c.normal + slip_by_turning(simulation, step, c, stage.cause),
-        points.velocity[lane]);
+    put_offset(simulation, c.a, r_a, points.r_a[lane]);
+    put_offset(simulation, c.b, r_b, points.r_b[lane]);
+    put(v - along * c.normal, points.velocity[lane]);
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     put(per_mass_unit * impulse.tangent(), points.impulse[lane]);
     put({targets.solve - along, targets.relax - along, targets.keep,
          per_mass_unit * impulse.normal},
         points.along[lane]);
+}
+
+/// Whether slip_by_turning() is of anything.
+inline bool slips_by_turning(const ColouredStage& stage) {
+    return stage.cause == Cause::kLoad && stage.simulation.needs.turning;
+}
+inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
+                        EightTurning& to) {
+    const StepData& step = stage.step;
+    const auto [a, b] = step.contacts.pair(index);
+    const TurningOf turning = turning_of(stage.simulation, a, b);
+    const Bivector& of_a = step.angular_velocity[turning == TurningOf::kB ? b : a];
+    const Bivector& of_b = step.angular_velocity[turning == TurningOf::kA ? a : b];
+    put({of_a.xy, of_a.xz, of_a.xw, of_a.yz}, to.a[lane]);
+    put({of_b.xy, of_b.xz, of_b.xw, of_b.yz}, to.b[lane]);
+    put({of_a.yw, of_a.zw, of_b.yw, of_b.zw}, to.last[lane]);
+    put(velocity_before_gravity(stage.simulation, step, a, b), to.against[lane]);
+}
+/// slip_by_turning()
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> slip_by_turning(const ColouredStage& stage,
+                                                          const Lane<F>& lane, const LaneVec4<F>& n,
+                                                          const EightTurning& of) {
+    const LaneVec4<F> a = load(lane, of.a), b = load(lane, of.b), last = load(lane, of.last);
+    const LaneBivector<F> of_a = {a[0], a[1], a[2], a[3], last[0], last[1]};
+    const LaneBivector<F> of_b = {b[0], b[1], b[2], b[3], last[2], last[3]};
+    const auto is_a = dot(of_a, of_a) <= dot(of_b, of_b);
+    LaneBivector<F> w;
+    for (std::size_t i = 0; i < 6; ++i) w[i] = is_a ? of_a[i] : of_b[i];
+    const F part = F{} + static_cast<float>(-0.5 * stage.step.h);
+    const LaneVec4<F> slip = part * velocity_at(w, load(lane, of.against));
+    return slip - dot(n, slip) * n;
 }
 
 /// The largest friction coefficient in float: its square, 1e36, is one too, of at most 3e38.
@@ -118,8 +186,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     Bivector turning;
     if (simulation.needs.turning) turning = step.angular_velocity[b] - step.angular_velocity[a];
     put(contact.normal, pairs.normal[lane]);
-    if (simulation.type_of(a).movable) put(r_a, pairs.centre_a[lane]);
-    if (simulation.type_of(b).movable) put(r_b, pairs.centre_b[lane]);
+    put_offset(simulation, a, r_a, pairs.centre_a[lane]);
+    put_offset(simulation, b, r_b, pairs.centre_b[lane]);
     put(v + slip_by_turning(simulation, step, contact, stage.cause), pairs.velocity[lane]);
     put(turning, lane, pairs.turning);
     pairs.rounding.lane[lane] =
@@ -131,12 +199,10 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
         const ContactTargets targets = targets_of.at(points[p].separation, along);
         put(place, point.place[lane]);
-        float normal = 0;
-        if (stage.cause == Cause::kLoad) {
-            const ContactImpulse& impulse = step.impulses[first + p];
-            normal = static_cast<float>(per_mass_unit * impulse.normal);
-            for (std::size_t i = 0; i < 4; ++i) point.impulse[lane][i] = normal * impulse.slope[i];
-        }
+        const ContactImpulse impulse =
+            stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
+        const auto normal = static_cast<float>(per_mass_unit * impulse.normal);
+        for (std::size_t i = 0; i < 4; ++i) point.impulse[lane][i] = normal * impulse.slope[i];
         point.along[lane] = {static_cast<float>(targets.solve), static_cast<float>(targets.relax),
                              static_cast<float>(targets.keep), normal};
     }

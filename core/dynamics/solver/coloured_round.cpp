@@ -45,7 +45,9 @@ template <bool kFriction, bool kRolling, class F>
         lane.store(arm_a, friction.arm_a);
         lane.store(arm_b, friction.arm_b);
         lane.store(along_tangent > F{} ? one / along_tangent : F{}, friction.mass);
-        store(lane, load(lane, points.velocity), friction.slip);
+        LaneVec4<F> slip = load(lane, points.velocity);
+        if (slips_by_turning(stage)) slip = slip + slip_by_turning(stage, lane, n, points.turning);
+        store(lane, slip, friction.slip);
         // The normal may have turned since the impulse was.
         const LaneVec4<F> last = load(lane, points.impulse);
         const LaneVec4<F> tangent =
@@ -66,7 +68,9 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];
+        prefetch(stage, coloured.round, i);
         EightPoints points;
+        if (!is_full(batch)) points = {};
         if constexpr (kFriction) coloured.round_friction[i].friction = {};
         if constexpr (kRolling) coloured.round_rolling[i] = {};
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
@@ -74,6 +78,8 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) 
             const Contact& c = stage.step.contacts[batch.contact[k]];
             if constexpr (kFriction)
                 coloured.round_friction[i].friction.lane[k] = float_friction(stage, c);
+            if (kFriction && slips_by_turning(stage))
+                put_turning(stage, batch.contact[k], k, points.turning);
             if constexpr (kRolling) {
                 RoundRolling& rolling = coloured.round_rolling[i];
                 rolling.arm.lane[k] = float_rolling_arm(stage, c);

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "core/dynamics/solver/coloured_row.hpp"
+#include "core/dynamics/solver/lane_bodies.hpp"
 
 // Sweeps over batches of pairs that are round on both sides.
 namespace tesserae::lanes {

@@ -13,6 +13,8 @@ template <bool kFriction, bool kRolling>
 void put_pairs(const ColouredStage& stage, std::uint32_t index, EightPairs& pairs) {
     ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
+    prefetch(stage, coloured.general, index);
+    if (!is_full(batch)) pairs = {};
     if constexpr (kFriction) coloured.pair_friction[index].friction = {};
     if constexpr (kRolling) {
         coloured.pair_rolling[index].arm = {};

@@ -61,6 +61,14 @@ auto go(float carried, float length) {
     };
 }
 
+using simd::Double4, simd::Float4;
+[[gnu::always_inline]] inline Double4 in_double(const Float4& x) {
+    return __builtin_convertvector(x, Double4);
+}
+[[gnu::always_inline]] inline double total_of(const Double4& x) {
+    return (x[0] + x[1]) + (x[2] + x[3]);
+}
+
 /// What sums over a batch's rows add up: changes of impulses and impulses times the velocities of
 /// the load's start less the targets.
 class Work {
@@ -74,9 +82,8 @@ class Work {
 
   private:
     static double sum_of(const Float8& lanes) {
-        double sum = 0;
-        for (std::size_t i = 0; i < kLanes; ++i) sum += double{lanes[i]};
-        return sum;
+        return total_of(in_double(__builtin_shufflevector(lanes, lanes, 0, 1, 2, 3)) +
+                        in_double(__builtin_shufflevector(lanes, lanes, 4, 5, 6, 7)));
     }
     Float8 of_step_{}, of_all_{};
 };
@@ -102,7 +109,6 @@ Work work_of_general(const ColouredIslands& coloured, std::uint32_t index) {
     return work;
 }
 
-using simd::Float4;
 /// A body's record as three vectors of four.
 using Twelve = std::array<Float4, 3>;
 
@@ -128,9 +134,9 @@ template <class Record>
 [[gnu::always_inline]] inline Twelve operator*(float k, const Twelve& a) {
     return {k * a[0], k * a[1], k * a[2]};
 }
-[[gnu::always_inline]] inline double product(const Twelve& a, const Twelve& b) {
-    const Float4 sums = a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
-    return (double{sums[0]} + sums[1]) + (double{sums[2]} + sums[3]);
+/// Four numbers whose total is the product: those of many bodies are added up first.
+[[gnu::always_inline]] inline Double4 product(const Twelve& a, const Twelve& b) {
+    return in_double(a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]));
 }
 
 /// An inertia times the turning part of x.
@@ -153,17 +159,19 @@ void put_columns(const BivectorMap& map, double factor, BodyInertia& to) {
 /// The momentum of a change of the motion of a body in `bodies`.
 [[gnu::always_inline]] inline Twelve momentum_of(const ColouredIslands& coloured, std::size_t body,
                                                  const Twelve& change) {
-    const std::array<float, 4>& rest = coloured.changes[body].rest;
-    const auto inverse_of = [](float inverse) { return inverse > 0 ? 1 / inverse : 0; };
-    const float inertia = inverse_of(rest[3]);
-    Twelve momentum = {inverse_of(rest[2]) * change[0], inertia * change[1], inertia * change[2]};
+    // Of its last two, the inverse mass and inertia.
+    const Float4 rest = simd::same_bits<Float4>(coloured.changes[body].rest);
+    const Float4 inverse = rest > 0 ? 1 / rest : Float4{};
+    const Float4 mass = __builtin_shufflevector(inverse, inverse, 2, 2, 2, 2);
+    const Float4 inertia = __builtin_shufflevector(inverse, inverse, 3, 3, 3, 3);
+    Twelve momentum = {mass * change[0], inertia * change[1], inertia * change[2]};
     if (coloured.turns_unevenly && rest[3] == 0) turn(coloured.inertias[body], change, momentum);
     return momentum;
 }
 
-[[gnu::always_inline]] inline double energy_of(const ColouredIslands& coloured, std::size_t body,
-                                               const Twelve& change) {
-    return 0.5 * product(change, momentum_of(coloured, body, change));
+[[gnu::always_inline]] inline Double4 twice_energy_of(const ColouredIslands& coloured,
+                                                      std::size_t body, const Twelve& change) {
+    return product(change, momentum_of(coloured, body, change));
 }
 
 }  // namespace
@@ -177,7 +185,8 @@ bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
 
 BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
-    BodySums sums = {};
+    Double4 twice_energy{};
+    double fallen = 0;
     const double kick_squared = (stage.step.h * stage.simulation.settings.gravity).squaredNorm();
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = coloured.bodies[i];
@@ -189,10 +198,10 @@ BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
                 put_columns(without_specks(world_map(type.inertia, type, stage.step.rotor[id])),
                             1 / stage.mass_unit, coloured.inertias[i]);
         }
-        sums[0] += energy_of(coloured, i, load(coloured.changes[i]));
-        if (type.falls) sums[1] += 0.5 * type.mass / stage.mass_unit * kick_squared;
+        twice_energy += twice_energy_of(coloured, i, load(coloured.changes[i]));
+        if (type.falls) fallen += 0.5 * type.mass / stage.mass_unit * kick_squared;
     }
-    return sums;
+    return {0.5 * total_of(twice_energy), fallen};
 }
 
 void begin_recalled_round(const ColouredStage& stage, BatchRange batches) {
@@ -229,15 +238,15 @@ void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
 
 BodySums weigh_step(const ColouredStage& stage, Range bodies) {
     const ColouredIslands& coloured = stage.step.coloured;
-    BodySums sums = {};
+    Double4 of_step{}, of_direction{}, twice_energy{};
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const Twelve start = load(coloured.last_changes[i]), end = load(coloured.changes[i]);
         const Twelve of_start = momentum_of(coloured, i, start);
-        sums[0] -= product(end - start, of_start);
-        sums[1] -= product(load(coloured.direction[i]), of_start);
-        sums[2] += energy_of(coloured, i, end);
+        of_step += product(end - start, of_start);
+        of_direction += product(load(coloured.direction[i]), of_start);
+        twice_energy += twice_energy_of(coloured, i, end);
     }
-    return sums;
+    return {-total_of(of_step), -total_of(of_direction), 0.5 * total_of(twice_energy)};
 }
 
 void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
@@ -263,16 +272,16 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
 
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried) {
     ColouredIslands& coloured = stage.step.coloured;
-    BodySums sums = {};
+    Double4 twice_energy{};
+    double fastest = 0;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const Twelve step = load(coloured.changes[i]) - load(coloured.last_changes[i]);
         const Twelve along = step + carried * load(coloured.direction[i]);
         store(along, coloured.direction[i]);
-        const Twelve velocity = {along[0], Float4{}, Float4{}};
-        sums[0] += 2 * energy_of(coloured, i, along);
-        sums[1] = std::max(sums[1], product(velocity, velocity));
+        twice_energy += twice_energy_of(coloured, i, along);
+        fastest = std::max(fastest, total_of(in_double(along[0] * along[0])));
     }
-    return sums;
+    return {total_of(twice_energy), fastest};
 }
 
 void go_along(const ColouredStage& stage, Range bodies, float length) {

@@ -9,6 +9,13 @@
 namespace tesserae {
 namespace {
 
+/// Approach::slowest
+double slowest_blow(const StepData& step, const TypeProperties& a, const TypeProperties& b) {
+    const double slowest = a.falls || b.falls ? kRestitutionKicks * step.kick : 0;
+    if (std::max(a.restitution, b.restitution) > 0) return slowest;
+    return std::max(slowest, kStill * (std::min(a.slop, b.slop) / kSlop));
+}
+
 Approach approach_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
     const TypeProperties& a = simulation.type_of(contact.a);
     const TypeProperties& b = simulation.type_of(contact.b);
@@ -16,8 +23,7 @@ Approach approach_of(const Simulation& simulation, const StepData& step, const C
     const double half_size = std::min(a.slop, b.slop) / kSlop;
     Approach approach;
     approach.e = std::max(a.restitution, b.restitution);
-    approach.slowest = a.falls || b.falls ? kRestitutionKicks * step.kick : 0;
-    if (approach.e == 0) approach.slowest = std::max(approach.slowest, kStill * half_size);
+    approach.slowest = slowest_blow(step, a, b);
     approach.g = (a.falls - b.falls) * contact.normal.dot(gravity);
     approach.through = 0.5 * half_size * approach.e * approach.e;  // as is the energy at stake
     return approach;
@@ -139,15 +145,12 @@ Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const C
     if (cause == Cause::kBlow || !simulation.needs.turning) return Vec4::Zero();
     const Bivector &of_a = step.angular_velocity[contact.a],
                    &of_b = step.angular_velocity[contact.b];
-    const bool a_turns = is_driven(simulation, contact.a),
-               b_turns = is_driven(simulation, contact.b);
-    const bool is_a = a_turns != b_turns ? a_turns : dot(of_a, of_a) <= dot(of_b, of_b);
+    const TurningOf turning = turning_of(simulation, contact.a, contact.b);
+    const bool is_a = turning == TurningOf::kSlower ? dot(of_a, of_a) <= dot(of_b, of_b)
+                                                    : turning == TurningOf::kA;
     const Bivector& w = is_a ? of_a : of_b;
     if (w == Bivector{}) return Vec4::Zero();
-    // Before gravity, which the load takes back along the normal.
-    const double kicks = simulation.type_of(contact.b).falls - simulation.type_of(contact.a).falls;
-    const Vec4 u = step.velocity[contact.b] - step.velocity[contact.a] -
-                   kicks * step.h * simulation.settings.gravity;
+    const Vec4 u = velocity_before_gravity(simulation, step, contact.a, contact.b);
     const Vec4& n = contact.normal;
     const Vec4 slip = -0.5 * step.h * velocity_at(w, u);
     return slip - n.dot(slip) * n;
@@ -203,7 +206,8 @@ bool is_stopped(const Simulation& simulation, const StepData& step, std::size_t 
 }
 
 BlowFilter::BlowFilter(const Simulation& simulation, const StepData& step, const Contact& c)
-    : centre_(step.position[c.a]), slowest_(approach_of(simulation, step, c).slowest) {
+    : centre_(step.position[c.a]),
+      slowest_(slowest_blow(step, simulation.type_of(c.a), simulation.type_of(c.b))) {
     // At r from a's centre b's velocity against a is v + w.r, and n.(w.r) = -(w.n).r.
     Vec4 v = step.velocity[c.b] - step.velocity[c.a];
     if (simulation.needs.turning) {

@@ -86,6 +86,18 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
 /// out by (w h)^2/2 of its distance from the axis in every sub-step.
 Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const Contact& contact,
                      Cause cause);
+/// Whose surfaces: that of the body which is driven, else of the one that turns less.
+enum class TurningOf { kSlower, kA, kB };
+inline TurningOf turning_of(const Simulation& simulation, BodyId a, BodyId b) {
+    const bool of_a = is_driven(simulation, a), of_b = is_driven(simulation, b);
+    return of_a == of_b ? TurningOf::kSlower : of_a ? TurningOf::kA : TurningOf::kB;
+}
+/// How b moves against a [m/s] before gravity, which the load takes back along the normal.
+inline Vec4 velocity_before_gravity(const Simulation& simulation, const StepData& step, BodyId a,
+                                    BodyId b) {
+    const double kicks = simulation.type_of(b).falls - simulation.type_of(a).falls;
+    return step.velocity[b] - step.velocity[a] - kicks * step.h * simulation.settings.gravity;
+}
 
 /// Whether any contact of the island overlaps by more than is left alone, and some body is held: a
 /// push of Solver::kImpulse then follows the load, with which bodies move, and which is given back

@@ -19,10 +19,6 @@ constexpr int kColours = 64;
 /// the lanes of a batch have about as many.
 constexpr std::size_t kKinds = 1 + kManifoldPoints;
 
-bool is_round(const TypeProperties& type) {
-    return !type.movable || (type.arm == 0 && type.isotropic);
-}
-
 template <std::size_t kTangents, class Lanes>
 void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents, Lanes>& impulses) {
     resize_anew(impulses.normal, rows);
@@ -162,7 +158,7 @@ void Colouring::add_pair(const Simulation& simulation, StepData& step, const Con
     const std::uint32_t b = place_of(simulation, step, run.b);
     const std::size_t points = contacts.end - contacts.begin;
     const bool round =
-        points == 1 && is_round(simulation.type_of(run.a)) && is_round(simulation.type_of(run.b));
+        points == 1 && simulation.type_of(run.a).round && simulation.type_of(run.b).round;
     pair.points = static_cast<std::uint8_t>(points);
     used_.resize(step.coloured.bodies.size(), 0);
     const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;

@@ -185,6 +185,46 @@ template <class V>
     return to_dual_planes(rotate(rotor, to_twin(scaled(inverse_inertia, P))));
 }
 
+/// exp of vectors whose squares are at most kSmallTurn, by the series: the next terms are below
+/// 1e-19.
+template <class V>
+[[gnu::always_inline]] inline Twins<V> exp_of_small(const Pairs<V>& v, V squared) {
+    const V& s = squared;
+    const V sine = 1 - s * (1.0 / 6) * (1 - s * (1.0 / 20) * (1 - s * (1.0 / 42) * (1 - s / 72)));
+    const V cosine = 1 - s * 0.5 * (1 - s * (1.0 / 12) * (1 - s * (1.0 / 30) * (1 - s / 56)));
+    return {cosine, sine * v};
+}
+constexpr double kSmallTurn = 2.5e-3;
+
+/// At a constant world angular velocity for a time h; of one body or of two, each as if alone.
+/// @return false: it is not a small turn; nothing has been changed
+template <class V>
+[[gnu::always_inline]] inline bool turn_little(const Pairs<V>& omega, double h, Twins<V>& rotor) {
+    const Pairs<V> v = to_twin((-0.5 * h) * omega);
+    const V squared = dot(v, v);
+    if (!(simd::largest_lane(squared) <= kSmallTurn)) return false;
+    rotor = normalized(exp_of_small(v, squared) * rotor);
+    return true;
+}
+
+void turn_evenly(double h, Rotor& body, const Bivector& omega) {
+    TwinQuaternion rotor = to_twin(body);
+    body = turn_little(to_dual_planes(omega), h, rotor) ? to_rotor(rotor) : turned(body, omega, h);
+}
+
+/// Of two bodies that turn little.
+/// @return false: they do not; nothing has been changed
+bool turn_both_evenly(const FreeBody& a, const FreeBody& b, double h) {
+    if (a.omega == Bivector{} || b.omega == Bivector{}) return false;
+    const TwinQuaternion rotor_a = to_twin(a.rotor), rotor_b = to_twin(b.rotor);
+    Twins<Double4> rotor{beside(rotor_a.s, rotor_b.s), beside(rotor_a.v, rotor_b.v)};
+    if (!turn_little(beside(to_dual_planes(a.omega), to_dual_planes(b.omega)), h, rotor))
+        return false;
+    a.rotor = to_rotor(TwinQuaternion{first_of(rotor.s), first_of(rotor.v)});
+    b.rotor = to_rotor(TwinQuaternion{second_of(rotor.s), second_of(rotor.v)});
+    return true;
+}
+
 /// Of principal axes, as principal_rotor() gives.
 void put_principal(const TypeProperties& type, const Rotor& principal, Rotor& body) {
     body = type.has_axes ? projected_to_spin4(principal * reverse(type.axes)) : principal;
@@ -231,6 +271,7 @@ bool turn_both_by_midpoint(const FreeBody& a, const FreeBody& b, double h) {
 }  // namespace
 
 void turn_freely(const FreeBody& a, const FreeBody& b, RotationIntegrator integrator, double h) {
+    if (a.type.isotropic && b.type.isotropic && turn_both_evenly(a, b, h)) return;
     if (integrator == RotationIntegrator::kMidpoint && !a.type.isotropic && !b.type.isotropic &&
         turn_both_by_midpoint(a, b, h))
         return;
@@ -242,7 +283,7 @@ void turn_freely(const TypeProperties& type, RotationIntegrator integrator, doub
                  Bivector& omega) {
     if (omega == Bivector{}) return;
     if (type.isotropic) {
-        rotor = turned(rotor, omega, h);
+        turn_evenly(h, rotor, omega);
     } else if (integrator == RotationIntegrator::kMidpoint) {
         turn_by_midpoint(type, h, rotor, omega);
     } else {

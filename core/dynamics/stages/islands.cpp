@@ -88,21 +88,15 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         if (!movable(run.a) || !movable(run.b)) islands.held[island] = 1;
         islands.contacts[island] += static_cast<std::uint32_t>(run.size());
         if (!has_conjugates(simulation, run.a, run.b)) islands.conjugates[island] = 0;
-        for (const BodyId id : {run.a, run.b}) {
-            const TypeProperties& type = simulation.type_of(id);
-            if (!(type.inverse_mass > 0)) continue;
-            least_mass_[island] = std::min(least_mass_[island], type.mass);
-            most_mass_[island] = std::max(most_mass_[island], type.mass);
-        }
     }
     islands.falling_mass.assign(count, 0);
-    // Without gravity or pushes nothing asks for it.
-    const PhysicsSettings& settings = simulation.settings;
-    const bool weighs = settings.solver == Solver::kImpulse && !settings.gravity.isZero(0);
-    for (BodyId id = 0; weighs && id < parent_.size(); ++id) {
+    for (BodyId id = 0; id < parent_.size(); ++id) {
         const TypeProperties& type = simulation.type_of(id);
         const std::uint32_t island = number_[root_of(id)];
-        if (type.falls && island != kNone) islands.falling_mass[island] += type.mass;
+        if (island == kNone || !(type.inverse_mass > 0)) continue;
+        least_mass_[island] = std::min(least_mass_[island], type.mass);
+        most_mass_[island] = std::max(most_mass_[island], type.mass);
+        if (type.falls) islands.falling_mass[island] += type.mass;
     }
     resize_anew(islands.runs, member_.size());
     counting_sort(

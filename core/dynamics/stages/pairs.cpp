@@ -15,8 +15,8 @@ bool reaches(const Bounds& bounded, const Shape& unbounded) {
         unbounded);
 }
 
-bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
-    if (!overlap(step.bounds[a], step.bounds[b])) return false;  // the unbounded's are infinite
+bool is_pair_of_overlapping(const Simulation& simulation, const StepData& step, BodyId a,
+                            BodyId b) {
     const TypeProperties& type_a = simulation.type_of(a);
     const TypeProperties& type_b = simulation.type_of(b);
     if (!type_a.movable && !type_b.movable) return false;

@@ -16,7 +16,11 @@ bool reaches(const Bounds& bounded, const Shape& unbounded);
 /// Whether the narrow phase has to look at bodies a < b: contacts can move at least one, at least
 /// one is awake or driven, and where one can be within the step the other can be too. Every way of
 /// finding pairs decides by this.
-bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+bool is_pair_of_overlapping(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
+inline bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
+    return overlap(step.bounds[a], step.bounds[b]) &&  // the unbounded's are infinite
+           is_pair_of_overlapping(simulation, step, a, b);
+}
 
 /// step.pairs by testing every two bodies: the reference for faster ways.
 void test_all_pairs(const Simulation& simulation, StepData& step);

@@ -63,22 +63,31 @@ class ContactList {
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     Contact operator[](std::size_t i) const {
-        const Shared& shared = shared_of(i);
-        const NoSeam& no_seam = no_seams_[place_of_shared_[i]];
-        return {shared.normal, point(i),   separation(i),     shared.a,
-                shared.b,      feature(i), no_seam.seen_from, no_seam.points};
+        const std::uint32_t place = place_of_shared_[i];
+        const Head& head = heads_[place];
+        const NoSeam& no_seam = no_seams_[place];
+        return {shared_[place].normal, point(i),      separation(i), head.a, head.b, feature(i),
+                no_seam.seen_from,     no_seam.points};
     }
     /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
     /// little of each point go from run to run.
     Run run(std::size_t i, std::size_t limit) const {
         const std::uint32_t place = place_of_shared_[i];
-        const Shared& shared = shared_[place];
-        const std::size_t end = place + 1 < shared_size_ ? shared_[place + 1].first : size_;
-        return {i, std::min(end, limit), shared.a, shared.b};
+        return {i, std::min(end_of_run(place), limit), heads_[place].a, heads_[place].b};
+    }
+    /// Fetches ahead what a contact shares, which is asked for first.
+    [[gnu::always_inline]] void prefetch(std::size_t i) const {
+        const std::uint32_t place = place_of_shared_[i];
+        const auto* const shared = reinterpret_cast<const char*>(&shared_[place]);
+        __builtin_prefetch(&heads_[place]);
+        __builtin_prefetch(shared);
+        __builtin_prefetch(shared + sizeof(Shared) - 1);
     }
     /// All runs, and one of them by its number.
     std::size_t run_count() const { return shared_size_; }
-    Run nth_run(std::size_t n) const { return run(shared_[n].first, size_); }
+    Run nth_run(std::size_t n) const {
+        return {heads_[n].first, end_of_run(n), heads_[n].a, heads_[n].b};
+    }
     /// The number of the run that a contact is in.
     std::uint32_t run_of(std::size_t i) const { return place_of_shared_[i]; }
     /// Behind the last contact of the pair that contact i is of.
@@ -88,27 +97,30 @@ class ContactList {
         while (end < size_ && pair(end) == pair(i));
         return end;
     }
-    std::pair<BodyId, BodyId> pair(std::size_t i) const { return {shared_of(i).a, shared_of(i).b}; }
+    std::pair<BodyId, BodyId> pair(std::size_t i) const {
+        const Head& head = heads_[place_of_shared_[i]];
+        return {head.a, head.b};
+    }
     /// The pair's Contact::no_seam, if contacts [begin, end) are all the points that it is of.
     unsigned no_seam(std::size_t begin, std::size_t end) const {
         const NoSeam& no_seam = no_seams_[place_of_shared_[begin]];
         return no_seam.points == end - begin ? no_seam.seen_from : 0u;
     }
-    const PackedVec4& normal(std::size_t i) const { return shared_of(i).normal; }
+    const PackedVec4& normal(std::size_t i) const { return shared_[place_of_shared_[i]].normal; }
     Vec4 point(std::size_t i) const {
-        const Shared& shared = shared_of(i);
-        if (shared.first == i) return shared.place;
+        const std::uint32_t place = place_of_shared_[i];
+        if (heads_[place].first == i) return shared_[place].place;
         const auto& [x, y, z, w] = further_[further_at(i)].from_first;
-        return shared.place + assembled(x, y, z, w);
+        return shared_[place].place + assembled(x, y, z, w);
     }
     double separation(std::size_t i) const {
-        const Shared& shared = shared_of(i);
-        if (shared.first == i) return shared.separation;
+        const std::uint32_t place = place_of_shared_[i];
+        if (heads_[place].first == i) return shared_[place].separation;
         return std::bit_cast<double>(further_[further_at(i)].separation);
     }
     std::uint32_t feature(std::size_t i) const {
-        const Shared& shared = shared_of(i);
-        return shared.first == i ? shared.feature : further_[further_at(i)].feature;
+        const std::uint32_t place = place_of_shared_[i];
+        return heads_[place].first == i ? heads_[place].feature : further_[further_at(i)].feature;
     }
     Part part(std::size_t begin, std::size_t end) const { return {{*this, begin}, {*this, end}}; }
     Iterator begin() const { return {*this, 0}; }
@@ -117,6 +129,7 @@ class ContactList {
     /// Empties it, with memory for about as many contacts as there were.
     void restart() {
         prepare(place_of_shared_, size_);
+        prepare(heads_, shared_size_);
         prepare(shared_, shared_size_);
         prepare(no_seams_, shared_size_);
         prepare(further_, size_ - shared_size_);
@@ -128,7 +141,8 @@ class ContactList {
         if (is_shared) {
             if (further_.size() == size_ - shared_size_) further_.emplace_back();
         } else {
-            if (shared_.size() == shared_size_) shared_.emplace_back(), no_seams_.emplace_back();
+            if (shared_.size() == shared_size_)
+                heads_.emplace_back(), shared_.emplace_back(), no_seams_.emplace_back();
             ++shared_size_;
         }
         write(contact, {size_++, shared_size_ - 1}, !is_shared);
@@ -176,8 +190,10 @@ class ContactList {
             place_of_shared_, [](const Start& start) { return start.point; },
             [](std::uint32_t& place, const Start& way) { place += place_of(way.shared); });
         move(
-            shared_, [](const Start& start) { return start.shared; },
-            [](Shared& shared, const Start& way) { shared.first += place_of(way.point); });
+            heads_, [](const Start& start) { return start.shared; },
+            [](Head& head, const Start& way) { head.first += place_of(way.point); });
+        move(
+            shared_, [](const Start& start) { return start.shared; }, [](Shared&, const Start&) {});
         move(
             no_seams_, [](const Start& start) { return start.shared; },
             [](NoSeam&, const Start&) {});
@@ -188,13 +204,16 @@ class ContactList {
     }
 
   private:
+    /// What points share, in two: many stages go through all contacts and need the first only.
+    struct Head {
+        BodyId a, b;
+        std::uint32_t first;    ///< place of the first point
+        std::uint32_t feature;  ///< of that
+    };
     struct Shared {
         PackedVec4 normal;
         PackedVec4 place;  ///< of the first point, with:
         double separation;
-        std::uint32_t feature;
-        BodyId a, b;
-        std::uint32_t first;  ///< its place
     };
     /// See Contact.
     struct NoSeam {
@@ -238,11 +257,14 @@ class ContactList {
                 move_one(*m, i);
     }
 
-    const Shared& shared_of(std::size_t i) const { return shared_[place_of_shared_[i]]; }
+    std::size_t end_of_run(std::size_t n) const {
+        return n + 1 < shared_size_ ? heads_[n + 1].first : size_;
+    }
     /// Place of a point that is not the first: so many come before it, less the first ones.
     std::size_t further_at(std::size_t i) const { return i - place_of_shared_[i] - 1; }
     void grow_to(Start end, double ratio) {
         grow(place_of_shared_, size_, end.point, ratio);
+        grow(heads_, shared_size_, end.shared, ratio);
         grow(shared_, shared_size_, end.shared, ratio);
         grow(no_seams_, shared_size_, end.shared, ratio);
         grow(further_, size_ - shared_size_, end.point - end.shared, ratio);
@@ -279,7 +301,8 @@ class ContactList {
         place_of_shared_[at.point] = place_of(at.shared);
         Shared& shared = shared_[at.shared];
         if (is_first) {
-            shared = {c.normal, c.point, c.separation, c.feature, c.a, c.b, place_of(at.point)};
+            heads_[at.shared] = {c.a, c.b, place_of(at.point), c.feature};
+            shared = {c.normal, c.point, c.separation};
             no_seams_[at.shared] = {c.no_seam, c.no_seam_points};
             return;
         }
@@ -293,8 +316,9 @@ class ContactList {
     // Those that are used come first. What lies behind them stays, to be written over.
     std::size_t size_ = 0, shared_size_ = 0;
     std::vector<std::uint32_t> place_of_shared_;  ///< of every contact
+    std::vector<Head> heads_;                     ///< of every run; likewise:
     std::vector<Shared> shared_;
-    std::vector<NoSeam> no_seams_;  ///< of each of them
+    std::vector<NoSeam> no_seams_;
     std::vector<Further> further_;
     std::vector<Start> starts_;
     std::vector<Move> moves_;

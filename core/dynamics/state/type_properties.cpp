@@ -55,6 +55,7 @@ TypeProperties properties_of(const BodyType& type) {
     if (!type.fixed_rotation && !slips_round) p.inverse_inertia = inverse(p.inertia);
     const double first = p.inverse_inertia.xy;
     p.isotropic = p.inverse_inertia == Bivector{first, first, first, first, first, first};
+    p.round = !p.movable || (p.arm == 0 && p.isotropic);
     return p;
 }
 

@@ -159,6 +159,26 @@ TEST(FreeRotation, OfTwoBodiesIsThatOfEach) {
     }
 }
 
+/// Small turns are made by series, large ones by sines.
+TEST(FreeRotation, OfABallIsAnEvenTurnAtAnySpeed) {
+    std::mt19937_64 random(48);
+    Bodies bodies;
+    add(bodies, sphere_type(0.5));
+    const TypeProperties type = type_properties(bodies)[0];
+    for (int i = 0; i < 20000; ++i) {
+        const Bivector spin = random_spin(random);
+        Bivector omega = spin;
+        const Rotor start = exp(random_spin(random));
+        Rotor rotor = start;
+        turn_freely(type, RotationIntegrator::kMidpoint, kStep, rotor, omega);
+        EXPECT_EQ(omega, spin);
+        const Mat4 expected = to_matrix(exp(-0.5 * kStep * spin) * start);
+        // What rounds is the angle, and the products.
+        const double angle = kStep * std::sqrt(dot(spin, spin));
+        EXPECT_LT((to_matrix(rotor) - expected).norm(), 4e-15 + 4e-16 * angle) << i;
+    }
+}
+
 /// The largest relative changes of the four invariants over a million steps, 1/480 s in halves.
 void expect_invariants(const Vec4& sides, const Bivector& spin) {
     Bodies bodies;
