@@ -132,7 +132,7 @@ TEST(LargeIsland, OfAllShapesHasTheBitsOfTheSerialWorld) {
     for (BodyId id = 0; id < bodies.size(); ++id) {
         const Shape& shape = bodies.type_of(id).shape;
         if (!is_bounded(shape)) continue;
-        bodies.position[id] *= 0.4;
+        bodies.position[id] *= 0.5;  // nearer, and the first loads are gains, of which none is left
     }
     add(bodies, sphere_type(2, 100, 0.5), {0, 1.5, 0, 0});
     for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {

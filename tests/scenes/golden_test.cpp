@@ -56,8 +56,8 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "a667e8333bea479bbcfdd37ee88f7470");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "0fa4849dd10d62d58f3ffcb401dcba54");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "9b3f8ca1590f8fe4838fa95e02612c90");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "feba6980ac7ecb997b7520f022c5de20");
     EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "f21c7c9020404ec4a90b1d77434a837f");
 }
 

@@ -110,12 +110,14 @@ void leave_best_of_recalled(const ColouredIsland& island, const Threads& threads
     if (load.energy > 0) leave_part_of_load(island, threads, load.best_part());
 }
 
-/// A load by conjugate directions. It ends once neither a row's velocity nor, by the next step, a
-/// body's changes by more than the tolerance: what all of a wall does together no row sees.
+/// A load, or a compression, by conjugate directions. It ends once neither a row's velocity nor, by
+/// the next step, a body's changes by more than the tolerance: what all of a wall does together no
+/// row sees.
+/// @param instead   does that which is no gain, where this is one
 /// @return the residual of the last iteration [m/s]
-template <class Threads>
+template <class Threads, class Instead>
 double iterate_along_conjugates(const ColouredIsland& island, const Effort& effort,
-                                const Threads& threads, LaneCount lanes) {
+                                const Threads& threads, LaneCount lanes, const Instead& instead) {
     std::optional<ConjugateDirections<Threads>> directions;
     double residual = 0, smallest = std::numeric_limits<double>::infinity();
     const auto goes_on = [&](int i) {
@@ -138,7 +140,7 @@ double iterate_along_conjugates(const ColouredIsland& island, const Effort& effo
     }
     if (directions && residual > effort.enough && directions->is_gain()) {
         directions->take_back();
-        leave_best_of_recalled(island, threads, lanes);
+        instead();
     }
     return residual;
 }
@@ -159,10 +161,16 @@ void keep_coloured(const ColouredIsland& island, const Threads& threads) {
 
 /// The first part of a blow.
 template <class Threads>
-void compress_coloured(const ColouredIsland& island, const Effort& effort, const Threads& threads,
-                       LaneCount lanes) {
+void compress_coloured(const ColouredIsland& island, const Blow& blow, const Effort& effort,
+                       const Threads& threads, LaneCount lanes) {
+    const ColouredStage& stage = island.stage();
+    const auto sweep = [&] {
+        start_coloured(island, threads, lanes);
+        iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
+    };
+    if (blow.returned == 0 || !stage.step.islands.conjugates[island.number()]) return sweep();
     start_coloured(island, threads, lanes);
-    iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
+    iterate_along_conjugates(island, effort, threads, lanes, sweep);
 }
 
 /// The largest numbers of an island's contacts.
@@ -217,20 +225,24 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     step.was_hit[island] = 1;
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
-    const Effort effort =
-        effort_of_large_blow(simulation, step.islands.contacts[island], blow.fastest);
+    const std::uint32_t contacts = step.islands.contacts[island];
+    const Effort effort = blow.returned > 0
+                              ? effort_of_bounce(simulation, contacts, blow.fastest)
+                              : effort_of_large_blow(simulation, contacts, blow.fastest);
     const Range range = coloured.bodies();
-    compress_coloured(coloured, effort, threads, lanes);
+    compress_coloured(coloured, blow, effort, threads, lanes);
     step.has_rows[island] = 1;
     if (can_jam(simulation, blow) && has_jammed(coloured, threads))
-        compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), effort,
-                          threads, lanes);
+        compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), blow,
+                          effort, threads, lanes);
     const auto add = [&](Range some) { add_changes(stage, some); };
     if (blow.returned == 0) {
         threads.for_bodies(range, add);
         return keep_coloured(coloured, threads);
     }
     threads.for_bodies(range, [&](Range some) { keep_blow_motion(stage, some); });
+    // Where all that hit each other return alike, that much more is all of it.
+    leave_part_of_load(coloured, threads, 1 + std::min(1.0, blow.returned));
     iterate_coloured(coloured, Pass::kRelax, effort, threads, lanes);
     threads.for_bodies(range, add);
     limit_restitution(coloured, blow, threads);
@@ -273,7 +285,9 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     start_coloured(coloured, threads, lanes);
     const Effort effort = effort_of_load(simulation, step, island);
     if (step.islands.conjugates[island]) {
-        step.residual[island] = iterate_along_conjugates(coloured, effort, threads, lanes);
+        step.residual[island] = iterate_along_conjugates(coloured, effort, threads, lanes, [&] {
+            leave_best_of_recalled(coloured, threads, lanes);
+        });
     } else {
         if (impulse) leave_recalled(coloured, threads);
         step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);

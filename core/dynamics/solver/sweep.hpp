@@ -86,6 +86,14 @@ inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t con
     return {std::max((simulation.settings.iterations + 2) / 4, sweeps),
             kLargeBlowResidual * fastest, 4};
 }
+/// Of one from which bodies bounce: what they return by less no load makes up for. The compression
+/// is an even number of sweeps, so that conjugate directions are there from the first one on, and
+/// goes further while they lead somewhere.
+inline Effort effort_of_bounce(const Simulation& simulation, std::size_t contacts, double fastest) {
+    const auto sweeps = static_cast<int>(kBlowWork / contacts);
+    return {std::max({simulation.settings.iterations, sweeps, 2}) & ~1,
+            kLargeBlowResidual * fastest, 2, kBounceSweeps};
+}
 
 /// Of a blow among the contacts near it, see BlowPatches.
 inline Effort effort_of_patch(const Simulation& simulation, std::size_t contacts, double fastest) {

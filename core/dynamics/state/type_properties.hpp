@@ -20,8 +20,8 @@ struct TypeProperties {
     /// No normal impulse turns it, nor does any direction matter to how it moves; of what contacts
     /// do not move, all is.
     bool round = true;
-    bool has_axes = false;     ///< the principal axes are not the body's
-    Rotor axes;                ///< from principal axes to the body's
+    bool has_axes = false;  ///< the principal axes are not the body's
+    Rotor axes;             ///< from principal axes to the body's
     bool bounded = false;
     bool flat = false;     ///< has nothing but flat faces
     bool movable = false;  ///< contacts can change its motion

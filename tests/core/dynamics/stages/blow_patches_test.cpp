@@ -120,6 +120,32 @@ TEST(BlowPatches, MoveBodiesAsTheWholeIslandDoes) {
     }
 }
 
+/// What bounces on a heap that is solved as a whole, by the iterations that there are by default.
+TEST(BlowOfALargeIsland, ReturnsNewtonsSpeedOfPlatesOnABedOfBalls) {
+    Bodies bed;
+    add(bed, plane_type(Vec4::UnitY(), 0));
+    for (int layer = 0; layer < 3; ++layer)
+        for (int x = 0; x < 6; ++x)
+            for (int z = 0; z < 6; ++z)
+                for (int w = 0; w < 6; ++w)
+                    add(bed, sphere_type(0.5), {x - 2.5, 0.5 + layer, z - 2.5, w - 2.5});
+    for (const double size : {1.9, 3.9, 5.5})
+        for (const double mass : {5.0, 20.0, 80.0, 300.0}) {
+            constexpr double kSpeed = 3;
+            Bodies bodies = bed;
+            BodyType plate = box_type({size, 1, size, size}, mass);
+            plate.restitution = 0.8;
+            add(bodies, plate, {0, 3.5 + 0.4 * kStep * kSpeed, 0, 0}, {0, -kSpeed, 0, 0});
+            Found found = before_blows(bodies);
+            ASSERT_EQ(found.step.islands.size(), 1u);
+            ASSERT_GE(found.step.islands.contacts[0], kPatchedFrom);
+            EXPECT_GE(found.hits[0].size(), 8u);
+            found.step.awaits.assign(1, Awaits::kBlow);
+            solve_all(found);
+            EXPECT_NEAR(found.step.velocity.back()[1], 0.8 * kSpeed, 0.01) << size << ' ' << mass;
+        }
+}
+
 /// A ball of 10^4 masses drives what it hits aside.
 TEST(BlowPatches, GiveUpWhereTheyReachOut) {
     Bodies bodies = struck_layer(1e4, 20);
