@@ -161,14 +161,13 @@ void keep_coloured(const ColouredIsland& island, const Threads& threads) {
 
 /// The first part of a blow.
 template <class Threads>
-void compress_coloured(const ColouredIsland& island, const Blow& blow, const Effort& effort,
+void compress_coloured(const ColouredIsland& island, bool along_conjugates, const Effort& effort,
                        const Threads& threads, LaneCount lanes) {
-    const ColouredStage& stage = island.stage();
     const auto sweep = [&] {
         start_coloured(island, threads, lanes);
         iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
     };
-    if (blow.returned == 0 || !stage.step.islands.conjugates[island.number()]) return sweep();
+    if (!along_conjugates) return sweep();
     start_coloured(island, threads, lanes);
     iterate_along_conjugates(island, effort, threads, lanes, sweep);
 }
@@ -226,14 +225,14 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     const ColouredIsland coloured(simulation, step, island, Cause::kBlow);
     const ColouredStage& stage = coloured.stage();
     const std::uint32_t contacts = step.islands.contacts[island];
-    const Effort effort = blow.returned > 0
-                              ? effort_of_bounce(simulation, contacts, blow.fastest)
-                              : effort_of_large_blow(simulation, contacts, blow.fastest);
+    const bool bounces = blow.returned > 0 && step.islands.conjugates[island];
+    const Effort effort = bounces ? effort_of_bounce(simulation, contacts, blow.fastest)
+                                  : effort_of_large_blow(simulation, contacts, blow.fastest);
     const Range range = coloured.bodies();
-    compress_coloured(coloured, blow, effort, threads, lanes);
+    compress_coloured(coloured, bounces, effort, threads, lanes);
     step.has_rows[island] = 1;
     if (can_jam(simulation, blow) && has_jammed(coloured, threads))
-        compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), blow,
+        compress_coloured(ColouredIsland(simulation, step, island, Cause::kBlow, false), bounces,
                           effort, threads, lanes);
     const auto add = [&](Range some) { add_changes(stage, some); };
     if (blow.returned == 0) {
@@ -242,7 +241,7 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     }
     threads.for_bodies(range, [&](Range some) { keep_blow_motion(stage, some); });
     // Where all that hit each other return alike, that much more is all of it.
-    leave_part_of_load(coloured, threads, 1 + std::min(1.0, blow.returned));
+    if (bounces) leave_part_of_load(coloured, threads, 1 + std::min(1.0, blow.returned));
     iterate_coloured(coloured, Pass::kRelax, effort, threads, lanes);
     threads.for_bodies(range, add);
     limit_restitution(coloured, blow, threads);
