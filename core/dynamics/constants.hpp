@@ -123,7 +123,7 @@ constexpr std::size_t kPatchCost = 64;
 constexpr double kLargeBlowResidual = 1e-3;
 
 /// Sweeps of the compression of a large island from which bodies bounce, at most, while they go
-/// along conjugate directions: with 10 a plate of 300 masses that falls on 24 of a bed of 648 is
+/// along conjugate directions: with 10 a plate of 300 masses that falls on 8 of a bed of 648 is
 /// not stopped, with these it returns at e times its speed.
 constexpr int kBounceSweeps = 40;
 

@@ -185,9 +185,8 @@ void take_changes_back(const ColouredStage& stage, Range bodies) {
 
 namespace {
 /// How a body's turning has changed its angular velocity where take_changes_back() was.
-Bivector turned_by(const ColouredStage& stage, std::size_t body) {
-    const std::vector<Bivector>& turned = stage.step.coloured.angular_velocity;
-    return stage.cause == Cause::kBlow || turned.empty() ? Bivector{} : turned[body];
+Bivector turned_by(const ColouredIslands& coloured, std::size_t body) {
+    return coloured.angular_velocity.empty() ? Bivector{} : coloured.angular_velocity[body];
 }
 }  // namespace
 
@@ -198,7 +197,7 @@ double energy_of_changes(const ColouredStage& stage, Range bodies) {
         const BodyChange& change = coloured.changes[i];
         BodyMotion motion = {velocity_change(change), {}};
         if (stage.simulation.needs.turning)
-            motion.angular_velocity = angular_change(change) - turned_by(stage, i);
+            motion.angular_velocity = angular_change(change) - turned_by(coloured, i);
         sum += twice_kinetic_energy(stage.simulation, stage.step, coloured.bodies[i], motion);
     }
     return sum;
@@ -210,7 +209,7 @@ void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part)
         BodyChange& change = coloured.changes[i];
         for (float& v : change.velocity) v *= part;
         if (!stage.simulation.needs.turning) continue;
-        const Bivector turned = turned_by(stage, i);
+        const Bivector turned = turned_by(coloured, i);
         put_angular(double{part} * (angular_change(change) - turned) + turned, change);
     }
 }

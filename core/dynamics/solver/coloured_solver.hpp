@@ -163,13 +163,13 @@ void keep_coloured(const ColouredIsland& island, const Threads& threads) {
 template <class Threads>
 void compress_coloured(const ColouredIsland& island, bool along_conjugates, const Effort& effort,
                        const Threads& threads, LaneCount lanes) {
-    const auto sweep = [&] {
-        start_coloured(island, threads, lanes);
-        iterate_coloured(island, Pass::kSolve, effort, threads, lanes);
-    };
-    if (!along_conjugates) return sweep();
+    const auto sweep = [&] { iterate_coloured(island, Pass::kSolve, effort, threads, lanes); };
     start_coloured(island, threads, lanes);
-    iterate_along_conjugates(island, effort, threads, lanes, sweep);
+    if (!along_conjugates) return sweep();
+    iterate_along_conjugates(island, effort, threads, lanes, [&] {
+        start_coloured(island, threads, lanes);
+        sweep();
+    });
 }
 
 /// The largest numbers of an island's contacts.

@@ -17,8 +17,8 @@ struct TypeProperties {
                                ///< fixed, and of a hypersphere without friction, which no contact
                                ///< turns: normals go through its centre
     bool isotropic = true;     ///< all six inverses are equal
-    /// No normal impulse turns it, nor does any direction matter to how it moves; of what contacts
-    /// do not move, all is.
+    /// A hypersphere that is isotropic: no normal impulse turns it. So is all that contacts do not
+    /// move.
     bool round = true;
     bool has_axes = false;  ///< the principal axes are not the body's
     Rotor axes;             ///< from principal axes to the body's
