@@ -9,6 +9,7 @@
 #include "core/dynamics/stages/contacts.hpp"
 #include "core/dynamics/stages/kept_contacts.hpp"
 #include "core/dynamics/stages/motion.hpp"
+#include "core/dynamics/stages/rims.hpp"
 #include "core/dynamics/stages/sleeping.hpp"
 #include "core/dynamics/state/room.hpp"
 
@@ -132,6 +133,9 @@ void World::find_contacts(Schedule& schedule) {
     begin_contacts(simulation_, step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain,
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
+    if (simulation_.needs.rims)
+        schedule.for_each_range(step_.contacts.run_count(), kContactGrain,
+                                [&](Range runs) { aim_rims(simulation_, step_, runs); });
     first_loads_.guess(simulation_, step_, schedule);
 }
 

@@ -28,8 +28,7 @@ void list_blows(const Simulation& simulation, const StepData& step, Range contac
         const ContactList::Run run = step.contacts.run(begin, contacts.end);
         const BlowFilter filter(simulation, step, step.contacts[begin]);
         for (std::size_t i = run.begin; i < run.end; ++i)
-            if (filter.passes(step.contacts.point(i)) &&
-                blow_of(simulation, step, step.contacts[i]).fastest > 0)
+            if (filter.passes(step.contacts.point(i)) && blow_of(simulation, step, i).fastest > 0)
                 blows.push_back(static_cast<std::uint32_t>(i));
         begin = run.end;
     }
@@ -47,7 +46,7 @@ Blow blow_of_runs(const Simulation& simulation, const StepData& step,
         const BlowFilter filter(simulation, step, step.contacts[run.begin]);
         for (std::size_t i = run.begin; i < run.end; ++i)
             if (filter.passes(step.contacts.point(i)))
-                all = larger_of(all, blow_of(simulation, step, step.contacts[i]));
+                all = larger_of(all, blow_of(simulation, step, i));
         all.driven |= is_driven(simulation, run.a) || is_driven(simulation, run.b);
     }
     return all;

@@ -73,7 +73,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const double along = c.normal.dot(v);
     const ContactTargets targets =
         PairTargets(simulation, step, c, stage.cause, stage.parting.at(step, {index, index + 1}))
-            .at(c.separation, along);
+            .at(c.separation, along, rise_of(step, index));
     put(c.normal, points.normal[lane]);
     put_offset(simulation, c.a, r_a, points.r_a[lane]);
     put_offset(simulation, c.b, r_b, points.r_b[lane]);
@@ -188,7 +188,9 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     put(contact.normal, pairs.normal[lane]);
     put_offset(simulation, a, r_a, pairs.centre_a[lane]);
     put_offset(simulation, b, r_b, pairs.centre_b[lane]);
-    put(v + slip_by_turning(simulation, step, contact, stage.cause), pairs.velocity[lane]);
+    put(v + slip_by_turning(simulation, step, contact, stage.cause) +
+            slip_on_rim(step, first, contact.normal, v, stage.cause),
+        pairs.velocity[lane]);
     put(turning, lane, pairs.turning);
     pairs.rounding.lane[lane] =
         static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);
@@ -197,7 +199,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         const Vec4 place = points[p].place - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
-        const ContactTargets targets = targets_of.at(points[p].separation, along);
+        const ContactTargets targets =
+            targets_of.at(points[p].separation, along, rise_of(step, first + p));
         put(place, point.place[lane]);
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};

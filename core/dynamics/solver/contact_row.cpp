@@ -94,17 +94,20 @@ ContactRow make_row(const Simulation& simulation, const StepData& step, const Co
 }
 
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
-               const ContactImpulse& impulse, Cause cause, const Parting& parting,
-               ContactRow& row) {
+               std::size_t place, const ContactImpulse& impulse, Cause cause,
+               const Parting& parting, ContactRow& row) {
     const Vec4 v =
         relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-    const ContactTargets targets = PairTargets(simulation, step, contact, cause, parting)
-                                       .at(contact.separation, row.normal.dot(v));
+    const ContactTargets targets =
+        PairTargets(simulation, step, contact, cause, parting)
+            .at(contact.separation, row.normal.dot(v), rise_of(step, place));
     row.relax.target = targets.relax;
     row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
 
-    row.slip_by_turning =
-        row.friction > 0 ? slip_by_turning(simulation, step, contact, cause) : Vec4(Vec4::Zero());
+    row.slip_by_turning.setZero();
+    if (row.friction > 0)
+        row.slip_by_turning = slip_by_turning(simulation, step, contact, cause) +
+                              slip_on_rim(step, place, row.normal, v, cause);
 
     // The normal may have turned since the impulse was.
     row.normal_impulse = impulse.normal;

@@ -29,10 +29,12 @@ bool turns_push(const Simulation& simulation, const StepData& step, BodyId id,
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact);
 
 /// Its targets and impulses. Needs the velocities before the first impulse of the cause.
+/// @param place     of the contact in the list
 /// @param impulse   where to start from
 /// @param parting   of its pair
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
-               const ContactImpulse& impulse, Cause cause, const Parting& parting, ContactRow& row);
+               std::size_t place, const ContactImpulse& impulse, Cause cause,
+               const Parting& parting, ContactRow& row);
 
 /// The nearest impulse that friction allows.
 inline Vec4 clamped_to_ball(const Vec4& impulse, double radius) {

@@ -159,7 +159,7 @@ void start_rows(const Simulation& simulation, StepData& step, std::size_t island
         const Contact contact = step.contacts[place];
         if (!made) row = make_row(simulation, step, contact);
         const ContactImpulse last = cause == Cause::kLoad ? step.impulses[place] : ContactImpulse{};
-        start_row(simulation, step, contact, last, cause, of_pair, row);
+        start_row(simulation, step, contact, place, last, cause, of_pair, row);
         if (!simulation.needs.rolling) return;
         RollingRow& rolling = rolling_row_of(step, row);
         if (!made) rolling = make_rolling_row(simulation, step, row);

@@ -61,16 +61,26 @@ ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
     return targets;
 }
 
-ContactTargets targets_of_blow(const Approach& approach, double s, double h, double v0) {
+/// @param v0     at which the points meet
+/// @param rise   rise_of() the contact; by so much less the surfaces meet there
+ContactTargets targets_of_blow(const Approach& approach, double s, double h, double v0,
+                               double rise) {
     const double g = approach.g;
     ContactTargets targets;
     targets.solve = targets.relax = s > 0 ? -s / h : 0;
     if (approach.e == 0) return targets;
-    if (s > h * (v0 + h * g) || !(v0 > approach.slowest))
+    if (s > h * (v0 + rise + h * g) || !(v0 - rise > approach.slowest))
         return s > -approach.through ? targets_of_driven(approach, s, h) : targets;
     targets.solve = 0;
-    targets.relax = std::max(0.0, rebound_velocity(approach.e, v0, g, s, h) + h * g);
+    targets.relax = std::max(0.0, rebound_velocity(approach.e, v0 - rise, g, s, h) + h * g);
     return targets;
+}
+
+/// The aim for the points that brings the surfaces to where it says of them. A rim that rolls on
+/// meets the ground at the rise and leaves it at that in every sub-step, and on average stays on
+/// it; no point leaves faster than it met, so that none of this adds energy.
+double raised(double aim, double rise, double most) {
+    return aim > 0 ? aim + std::min(rise, most) : std::max(aim, std::min(aim + rise, most));
 }
 
 }  // namespace
@@ -96,7 +106,8 @@ PairTargets::PairTargets(const Simulation& simulation, const StepData& step, con
                          Cause cause, const Parting& parting)
     : cause_(cause),
       soft_(simulation.settings.solver == Solver::kSoft),
-      bounces_(cause == Cause::kBlow || simulation.needs.restitution),
+      bounces_(simulation.needs.restitution),
+      needs_approach_(cause == Cause::kBlow || bounces_ || simulation.needs.rims),
       h_(step.h),
       slop_(slop_of(simulation, contact.a, contact.b)),
       // Acts on the second half of the sub-step only, so that it has to be twice as large.
@@ -104,16 +115,26 @@ PairTargets::PairTargets(const Simulation& simulation, const StepData& step, con
       bias_(parting.pushed
                 ? std::min(fastest_, parting.part * (kBiasPart / h_ * kPushedBias * slop_))
                 : fastest_) {
-    if (bounces_) approach_ = approach_of(simulation, step, contact);
+    if (needs_approach_) approach_ = approach_of(simulation, step, contact);
 }
 
-ContactTargets PairTargets::at(double separation, double velocity) const {
-    const double s = separation;
-    if (cause_ == Cause::kBlow) return targets_of_blow(approach_, s, h_, -velocity);
+ContactTargets PairTargets::at(double separation, double velocity, double rise) const {
+    ContactTargets targets = of_level(separation, velocity, rise);
+    if (rise == 0) return targets;
+    const double met = -velocity - (cause_ == Cause::kLoad ? h_ * approach_.g : 0);
+    const double most = std::max(0.0, met);
+    targets.solve = raised(targets.solve, rise, most);
+    targets.relax = raised(targets.relax, rise, most);
+    return targets;
+}
+
+/// But for the rise of the aim.
+ContactTargets PairTargets::of_level(double s, double velocity, double rise) const {
+    if (cause_ == Cause::kBlow) return targets_of_blow(approach_, s, h_, -velocity, rise);
     if (bounces_ && approach_.e > 0) {
         const double v1 = -velocity, v0 = v1 - h_ * approach_.g;
-        const bool apart = s > 0 && s > h_ * v1;
-        if (s > -approach_.through && (apart || v0 > approach_.slowest))
+        const bool apart = s > 0 && s > h_ * (v1 + rise);
+        if (s > -approach_.through && (apart || v0 - rise > approach_.slowest))
             return targets_of_driven(approach_, s, h_);
     }
     return of_overlap(s);
@@ -218,19 +239,21 @@ BlowFilter::BlowFilter(const Simulation& simulation, const StepData& step, const
     approach_ = -c.normal.dot(v);
 }
 
-Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact) {
+Blow blow_of(const Simulation& simulation, const StepData& step, std::size_t place) {
+    const Contact contact = step.contacts[place];
+    const double rise = rise_of(step, place);
     const Vec4 r_a = contact.point - step.position[contact.a];
     const Vec4 r_b = contact.point - step.position[contact.b];
     const double v0 = -contact.normal.dot(
         relative_velocity(step, contact.a, r_a, contact.b, r_b, simulation.needs.turning));
     if (!(v0 > 0)) return {};
     const Approach approach = approach_of(simulation, step, contact);
-    const bool meets = contact.separation <= step.h * (v0 + step.h * approach.g);
-    if (!meets || !(v0 > approach.slowest)) return {};
+    const bool meets = contact.separation <= step.h * (v0 + rise + step.h * approach.g);
+    if (!meets || !(v0 - rise > approach.slowest)) return {};
     Blow blow;
     blow.fastest = v0;
     blow.returned =
-        std::max(0.0, targets_of_blow(approach, contact.separation, step.h, v0).relax) / v0;
+        std::max(0.0, targets_of_blow(approach, contact.separation, step.h, v0, rise).relax) / v0;
     return blow;
 }
 

@@ -51,19 +51,21 @@ class PairTargets {
                 Cause cause, const Parting& parting);
     /// @param velocity   along the normal, at which the bodies part before the first impulse of the
     ///                   cause [m/s]
-    ContactTargets at(double separation, double velocity) const;
+    /// @param rise       rise_of() the contact
+    ContactTargets at(double separation, double velocity, double rise) const;
     /// Else the velocity may be anything.
-    bool need_velocity() const { return bounces_; }
+    bool need_velocity() const { return needs_approach_; }
 
   private:
+    ContactTargets of_level(double separation, double velocity, double rise) const;
     ContactTargets of_overlap(double separation) const;
 
     Cause cause_;
-    bool soft_, bounces_;  ///< bounces_: the approach counts
-    double h_;             ///< [s]
-    double slop_;          ///< overlap that is left alone [m]
-    double fastest_;       ///< at which bodies are moved apart, at most [m/s]
-    double bias_;          ///< the same of a load of Solver::kImpulse
+    bool soft_, bounces_, needs_approach_;  ///< bounces_: of any pair
+    double h_;                              ///< [s]
+    double slop_;                           ///< overlap that is left alone [m]
+    double fastest_;                        ///< at which bodies are moved apart, at most [m/s]
+    double bias_;                           ///< the same of a load of Solver::kImpulse
     Approach approach_;
 };
 
@@ -86,6 +88,19 @@ inline Vec4 relative_velocity(const StepData& step, BodyId a, const Vec4& r_a, B
 /// out by (w h)^2/2 of its distance from the axis in every sub-step.
 Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const Contact& contact,
                      Cause cause);
+/// The same where the point at which a rim touches runs along it: see aim_rims(). It is no more
+/// than the slip and against it, so that a load turns that round at most, and adds no energy.
+/// @param place      of the contact in the list
+/// @param velocity   of b against a there [m/s]
+inline Vec4 slip_on_rim(const StepData& step, std::size_t place, const Vec4& normal,
+                        const Vec4& velocity, Cause cause) {
+    if (cause == Cause::kBlow || step.rim_slips.empty()) return Vec4::Zero();
+    const Vec4& all = step.rim_slips[step.contacts.run_of(place)];
+    if (!(all.dot(velocity) > 0)) return Vec4::Zero();
+    const double most = (velocity - normal.dot(velocity) * normal).norm(), length = all.norm();
+    return length > most ? Vec4(most / length * all) : all;
+}
+
 /// Whose surfaces: that of the body which is driven, else of the one that turns less.
 enum class TurningOf { kSlower, kA, kB };
 inline TurningOf turning_of(const Simulation& simulation, BodyId a, BodyId b) {
@@ -125,8 +140,8 @@ struct Blow {
     double returned = 0;  ///< the greatest part of such a speed that restitution gives back
     bool driven = false;  ///< some body moves at a velocity of its own; see is_driven()
 };
-/// Of one contact, but for `driven`. Needs the velocities before gravity.
-Blow blow_of(const Simulation& simulation, const StepData& step, const Contact& contact);
+/// Of one contact, by its place, but for `driven`. Needs the velocities before gravity.
+Blow blow_of(const Simulation& simulation, const StepData& step, std::size_t place);
 
 /// Passes points of a run that may be blows.
 class BlowFilter {

@@ -161,10 +161,9 @@ void BlowPatches::add_patches(StepData& step, std::size_t island) {
 /// Whether anything that is not in a patch of the island is hit now.
 bool BlowPatches::reaches_out(const Simulation& simulation, const StepData& step,
                               const Patched& patched) const {
-    return std::any_of(rim_.data() + patched.rim.begin, rim_.data() + patched.rim.end,
-                       [&](std::uint32_t contact) {
-                           return blow_of(simulation, step, step.contacts[contact]).fastest > 0;
-                       });
+    return std::any_of(
+        rim_.data() + patched.rim.begin, rim_.data() + patched.rim.end,
+        [&](std::uint32_t contact) { return blow_of(simulation, step, contact).fastest > 0; });
 }
 
 /// As before the blow, which the whole island then takes.

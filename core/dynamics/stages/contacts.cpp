@@ -4,6 +4,7 @@
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/constants.hpp"
+#include "core/dynamics/stages/rims.hpp"
 #include "core/dynamics/state/room.hpp"
 #include "core/error.hpp"
 
@@ -37,8 +38,12 @@ double find_contacts_of(const Simulation& simulation, const StepData& step, cons
                         double margin, std::vector<Contact>& list) {
     const auto [a, b] = pair;
     const Bodies& bodies = simulation.bodies;
-    return find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
-                         bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    const std::size_t first = list.size();
+    const double apart =
+        find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    if (simulation.needs.rims) add_rim_ahead(simulation, step, pair, first, list);
+    return apart;
 }
 
 void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
@@ -56,6 +61,9 @@ void begin_contacts(const Simulation& simulation, StepData& step) {
     resize_anew(step.hit, step.contacts.size());
     std::fill(step.hit.begin(), step.hit.end(), std::uint8_t{0});
     step.residual.clear();
+    if (!simulation.needs.rims) return;
+    resize_anew(step.rises, step.contacts.size());
+    resize_anew(step.rim_slips, step.contacts.run_count());
 }
 
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts) {

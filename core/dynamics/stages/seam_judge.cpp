@@ -6,6 +6,7 @@
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/stages/contacts.hpp"
+#include "core/dynamics/stages/rims.hpp"
 
 namespace tesserae {
 namespace {
@@ -289,12 +290,13 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
     double beside = part_of(type, kFlush);
     for (const Meeting& m : meetings) beside += depth_of(step, m);
     beside = std::min(beside, part_of(type, kSkin));
-    find_on_plane(face, simulation, step, body, margin);
+    find_on_plane(face, simulation, step, body, floor_[0].meeting->other, margin);
     for (const Contact& c : on_plane_) {
         const Vec4 point = point_below(c, 0);
         const auto under = std::find_if(floor_.begin(), floor_.end(), [&](const Floor& f) {
             return Placed(simulation, step, f.meeting->other).distance_to(point) <= beside;
         });
+        if (under == floor_.end() && c.feature == kRimAhead) continue;
         if (under == floor_.end()) return;
         under->points |= 1u << (&c - on_plane_.data());
     }
@@ -303,13 +305,14 @@ void SeamJudge::join_floor(const Face& face, const Simulation& simulation, const
 }
 
 void SeamJudge::find_on_plane(const Face& face, const Simulation& simulation, const StepData& step,
-                              BodyId body, double margin) {
+                              BodyId body, BodyId ground, double margin) {
     const Placed placed(simulation, step, body);
     Hyperplane plane;
     plane.normal = face.normal;
     plane.offset = face.offset;
     on_plane_.clear();
     find_contacts(0, placed.shape, placed.pose, 1, plane, placed.pose, margin, on_plane_);
+    if (simulation.needs.rims) add_rim_ahead_on_plane(simulation, step, body, ground, on_plane_);
 }
 
 /// The points of on_plane_ that are over one part of the floor.
@@ -326,10 +329,13 @@ void SeamJudge::stand_on(const Floor& floor, const Simulation& simulation, const
         const Vec4 on_body = c.point - 0.5 * c.separation * c.normal;
         const double separation = floor.face.normal.dot(on_body) - floor.face.offset;
         if ((floor.points >> i & 1u) == 0 || separation > margin) continue;
-        contacts.push_back(
-            {face_of_b ? Vec4(-floor.face.normal) : floor.face.normal,
-             on_body - 0.5 * separation * floor.face.normal, separation, a, b,
-             feature_over_face(placed_a.shape, placed_b.shape, face_of_b, outward, c.feature)});
+        const std::uint32_t feature =
+            c.feature == kRimAhead
+                ? kRimAhead
+                : feature_over_face(placed_a.shape, placed_b.shape, face_of_b, outward, c.feature);
+        contacts.push_back({face_of_b ? Vec4(-floor.face.normal) : floor.face.normal,
+                            on_body - 0.5 * separation * floor.face.normal, separation, a, b,
+                            feature});
     }
     finish(m, first, floor.face.normal.dot(normal_of(step, m)));
     joined_.push_back(&m);
@@ -341,7 +347,7 @@ void SeamJudge::rise_on(const Face& face, const Simulation& simulation, const St
                         const Meeting& m) {
     const Placed other(simulation, step, m.other);
     const double margin = margins_of(simulation, step, m.body, m.other).as_they_move;
-    find_on_plane(face, simulation, step, m.body, margin);
+    find_on_plane(face, simulation, step, m.body, m.other, margin);
     Floor floor{&m, face, 0};
     for (std::size_t i = 0; i < on_plane_.size(); ++i)
         if (other.distance_to(point_below(on_plane_[i], 0)) <= margin) floor.points |= 1u << i;

@@ -77,7 +77,7 @@ class SeamJudge {
     void rise_on(const Face& face, const Simulation& simulation, const StepData& step,
                  const Meeting& meeting);
     void find_on_plane(const Face& face, const Simulation& simulation, const StepData& step,
-                       BodyId body, double margin);
+                       BodyId body, BodyId ground, double margin);
     void finish(const Meeting& meeting, std::uint32_t first, double cosine);
 
     std::vector<Ground> grounds_;

@@ -18,6 +18,7 @@ struct Needs {
     bool restitution = true;     ///< rebounds: a body has restitution
     bool uneven_inertia = true;  ///< 6x6 inertia: some movable body's depends on the direction
     bool seams = true;           ///< faces that may lie in one plane: a bounded body has faces
+    bool rims = true;            ///< where they go: some body is a product of balls, and some turns
     bool manifolds = true;       ///< kept ones: two bodies have nothing but flat faces
     bool turning = true;         ///< rotors and angular velocities: some body turns, or contacts
                                  ///< can turn it

@@ -174,7 +174,11 @@ struct StepData {
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
-    KeptImpulses recalled;                 ///< what a sub-step leaves to the next of the step
+    /// Of every contact, and of every run of them, where there are rims: see rise_of() and
+    /// slip_on_rim().
+    std::vector<double> rises;
+    std::vector<Vec4> rim_slips;
+    KeptImpulses recalled;  ///< what a sub-step leaves to the next of the step
     /// Of `impulses` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
@@ -234,6 +238,12 @@ inline const std::vector<Bivector>& last_angular_impulses(const Simulation& simu
     sum += impulse.yw * map.col(4);
     sum += impulse.zw * map.col(5);
     return {sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]};
+}
+
+/// By how much faster than its two points a contact's surfaces come together until the middle of
+/// the next sub-step [m/s]: see aim_rims().
+inline double rise_of(const StepData& step, std::size_t contact) {
+    return step.rises.empty() ? 0 : step.rises[contact];
 }
 
 inline BodyMotion motion_of(const StepData& step, BodyId id) {

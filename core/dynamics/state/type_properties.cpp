@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <limits>
 
 #include "core/algebra/twin_quaternion.hpp"
@@ -46,6 +47,8 @@ TypeProperties properties_of(const BodyType& type) {
         type.shape);
     p.slop = kSlop * least_half_size;
     p.flat = std::visit([]<class S>(const S&) { return S::kBounded && IsPolytope<S>; }, type.shape);
+    p.has_rim =
+        std::visit([]<class S>(const S&) { return std::derived_from<S, BallProduct>; }, type.shape);
     // A 16-cell is as wide as a ball along all its axes.
     p.arm = p.flat || least_half_size < p.radius ? p.radius : 0;
     p.movable = is_movable(type);

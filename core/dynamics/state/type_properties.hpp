@@ -24,6 +24,7 @@ struct TypeProperties {
     Rotor axes;             ///< from principal axes to the body's
     bool bounded = false;
     bool flat = false;     ///< has nothing but flat faces
+    bool has_rim = false;  ///< is a product of balls
     bool movable = false;  ///< contacts can change its motion
     bool fixed = false;    ///< its position or its rotation is
     bool falls = false;    ///< gravity acts on it

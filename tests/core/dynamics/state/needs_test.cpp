@@ -7,6 +7,7 @@
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
+#include "tests/core/shape/oracle.hpp"
 
 namespace tesserae {
 namespace {
@@ -55,6 +56,12 @@ TEST(Needs, AreThoseOfTheBodies) {
     EXPECT_TRUE(needs_of(with(cube)).seams);
     EXPECT_FALSE(needs_of(with(capsule_type(1, 1))).seams) << "a floor that is one plane has none";
     expect(with(held_box, {1, 0, 0, 0, 0, 0}), false, false, false, true, "a driven box");
+    BodyType coin = held_cube;
+    coin.shape = spherinder(0.5, 0.1);
+    EXPECT_FALSE(needs_of(with(coin)).rims) << "a coin that cannot turn";
+    coin.fixed_rotation = false;
+    EXPECT_TRUE(needs_of(with(coin)).rims);
+    EXPECT_FALSE(needs_of(with(cube)).rims);
 }
 
 TEST(Needs, RollingFrictionNeedsFrictionAndWhatCanTurn) {
