@@ -250,6 +250,9 @@ constexpr double kSlender = 64;
 /// (ten times the overlap that the solver leaves alone). More, and slow motion freezes; less, and
 /// the last trembling of a pile keeps it awake.
 constexpr double kStill = 10 * kSlop;
+/// Nor is it in a step in which it gains more than this part of that speed a second. More, and what
+/// begins to tip or to roll freezes; less, and rounding keeps bodies awake.
+constexpr double kStarts = 0.03;
 
 /// A body's least inertia, as a part of mass times bounding radius squared, usual 1e-7: one thinner
 /// than some 3e-4 of its length turns about its length as if it were that thick. Less, and the

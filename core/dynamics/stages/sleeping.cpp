@@ -7,10 +7,21 @@
 namespace tesserae {
 namespace {
 
-bool is_still(const Simulation& simulation, const StepData& step, BodyId id) {
+/// Of any of its points [m/s], at most.
+double speed_of(const TypeProperties& type, const Vec4& velocity, const Bivector& omega) {
+    return velocity.norm() + type.radius * norm(omega);
+}
+
+/// For how long [s] a body has been still, after a step. What gathers speed only begins to move: a
+/// tower that has just begun to tip is slower than the trembling of a pile that lies.
+double still_for(const Simulation& simulation, const StepData& step, BodyId id, double before) {
     const TypeProperties& type = simulation.type_of(id);
-    const double speed = step.velocity[id].norm() + type.radius * norm(step.angular_velocity[id]);
-    return speed < kStill / kSlop * type.slop;
+    const double most = kStill / kSlop * type.slop;
+    const double speed = speed_of(type, step.velocity[id], step.angular_velocity[id]);
+    if (!(speed < most)) return 0;
+    const Bodies& last = simulation.bodies;
+    const double gained = speed - speed_of(type, last.velocity[id], last.angular_velocity[id]);
+    return gained > kStarts * most * step.dt ? before : before + step.dt;
 }
 
 /// Slow is not at rest: what nothing holds flies on, however slowly.
@@ -90,7 +101,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
     for (BodyId id = 0; id < count; ++id) {
         if (is_asleep(step, id)) continue;
         const bool woke = !before.empty() && before[id] != kAwake;
-        still[id] = is_still(simulation, step, id) && !woke ? still[id] + step.dt : 0;
+        still[id] = woke ? 0 : still_for(simulation, step, id, still[id]);
     }
 
     // A body without contacts is an island of its own.

@@ -179,5 +179,40 @@ TEST(Sleeping, ContinuesBitForBitFromItsBodiesAndMemory) {
         }
 }
 
+/// It tips by so little that it is slower than what lies still for the first second or two.
+TEST(Sleeping, WhatBeginsToTipFalls) {
+    for (const double side : {0.2, 1.0, 2.0})
+        for (const double beyond : {0.002, 0.004, 0.01}) {
+            const double height = 6 * side, lean = std::atan(side / height) + beyond;
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitY(), 0, 0.9));
+            BodyType tower = box_type({side, height, side, side});
+            tower.friction = 0.9;
+            const Rotor turn = exp(Bivector{0.5 * lean, 0, 0, 0, 0, 0});
+            const Vec4 half = 0.5 * Vec4(side, height, side, side);
+            const double y = to_matrix(turn).row(1).cwiseAbs().dot(half);
+            add(bodies, tower, y * Vec4::UnitY(), Vec4::Zero(), {}, turn);
+            World world(bodies, sleepy());
+            run(world, 12 * 240);
+            EXPECT_LT(world.bodies().position[1][1], 0.6 * side) << side << ' ' << beyond;
+        }
+}
+
+TEST(Sleeping, ABallOnAGentleSlopeBeginsToRoll) {
+    for (const double radius : {0.02, 0.5, 5.0})
+        for (const double slope : {1e-3, 1e-2}) {
+            PhysicsSettings settings = sleepy();
+            settings.gravity = {10 * std::sin(slope), -10 * std::cos(slope), 0, 0};
+            Bodies bodies;
+            add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+            add(bodies, sphere_type(radius, 1, 0.5), radius * Vec4::UnitY());
+            World world(bodies, settings);
+            run(world, 960);
+            EXPECT_NEAR(world.bodies().velocity[1][0], 0.75 * 10 * std::sin(slope) * 4,
+                        1e-6 + 1e-6 * radius)
+                << radius << ' ' << slope;
+        }
+}
+
 }  // namespace
 }  // namespace tesserae
