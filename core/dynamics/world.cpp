@@ -133,9 +133,11 @@ void World::find_contacts(Schedule& schedule) {
     begin_contacts(simulation_, step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain,
                             [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
-    if (simulation_.needs.rims)
+    if (simulation_.needs.rims) {
+        count_company(simulation_, step_);
         schedule.for_each_range(step_.contacts.run_count(), kContactGrain,
                                 [&](Range runs) { aim_rims(simulation_, step_, runs); });
+    }
     first_loads_.guess(simulation_, step_, schedule);
 }
 

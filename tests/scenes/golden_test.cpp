@@ -59,7 +59,7 @@ TEST_F(Golden, GalleryScenesMoveAsEver) {
     EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "9b3f8ca1590f8fe4838fa95e02612c90");
     EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "feba6980ac7ecb997b7520f022c5de20");
     EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "f21c7c9020404ec4a90b1d77434a837f");
-    EXPECT_EQ(end_of_gallery("race.toml", 240).hash, "bcc2b8a2ac2d3b5e653a89bdea521a09");
+    EXPECT_EQ(end_of_gallery("race.toml", 240).hash, "4dcd38be1eecfd85b101bec856cf8d86");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {

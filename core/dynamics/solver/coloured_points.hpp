@@ -73,7 +73,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const double along = c.normal.dot(v);
     const ContactTargets targets =
         PairTargets(simulation, step, c, stage.cause, stage.parting.at(step, {index, index + 1}))
-            .at(c.separation, along, rise_of(step, index));
+            .at(c.separation, along, 0);  // of round bodies
     put(c.normal, points.normal[lane]);
     put_offset(simulation, c.a, r_a, points.r_a[lane]);
     put_offset(simulation, c.b, r_b, points.r_b[lane]);
@@ -175,6 +175,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const BodyId a = contact.a, b = contact.b;
     const PairTargets targets_of(simulation, step, contact, stage.cause,
                                  stage.parting.at(step, {first, first + count}));
+    // What is soft would take them back: see lower_rises().
+    const bool rises = simulation.settings.solver != Solver::kSoft;
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     std::array<PairPoint, kManifoldPoints> points;
     points[0] = {contact.point, contact.separation};
@@ -189,7 +191,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     put_offset(simulation, a, r_a, pairs.centre_a[lane]);
     put_offset(simulation, b, r_b, pairs.centre_b[lane]);
     put(v + slip_by_turning(simulation, step, contact, stage.cause) +
-            slip_on_rim(step, first, contact.normal, v, stage.cause),
+            slip_on_rim(step, {first, first + count}, contact.normal, v, stage.cause),
         pairs.velocity[lane]);
     put(turning, lane, pairs.turning);
     pairs.rounding.lane[lane] =
@@ -199,8 +201,8 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         const Vec4 place = points[p].place - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
-        const ContactTargets targets =
-            targets_of.at(points[p].separation, along, rise_of(step, first + p));
+        const double rise = rises ? rise_of(step, first + p) : 0;
+        const ContactTargets targets = targets_of.at(points[p].separation, along, rise);
         put(place, point.place[lane]);
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};

@@ -107,7 +107,7 @@ void start_row(const Simulation& simulation, const StepData& step, const Contact
     row.slip_by_turning.setZero();
     if (row.friction > 0)
         row.slip_by_turning = slip_by_turning(simulation, step, contact, cause) +
-                              slip_on_rim(step, place, row.normal, v, cause);
+                              slip_on_rim(step, {place, place + 1}, row.normal, v, cause);
 
     // The normal may have turned since the impulse was.
     row.normal_impulse = impulse.normal;

@@ -201,6 +201,17 @@ bool leave_whirling(const Simulation& simulation, const StepData& step,
     return any;
 }
 
+/// A rim has turned since the load of soft contacts aimed at its rise: what it lacks of that by now
+/// is not missing.
+void lower_rises(const Simulation& simulation, const StepData& step, std::span<ContactRow> rows) {
+    for (ContactRow& row : rows) {
+        if (!(row.relax.target > 0)) continue;
+        const Vec4 v =
+            relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
+        row.relax.target = std::clamp(row.normal.dot(v), 0.0, row.relax.target);
+    }
+}
+
 /// What the rows' impulses times their velocities are, less those times the pass's targets.
 template <NormalPass ContactRow::*kPass>
 double work_of(const Simulation& simulation, StepData& step, std::span<const ContactRow> rows) {
@@ -420,6 +431,7 @@ void relax_island(const Simulation& simulation, StepData& step, std::size_t isla
     if (simulation.settings.solver == Solver::kSoft) {
         const std::span<ContactRow> rows = rows_of(step, island);
         const bool whirls = leave_whirling(simulation, step, rows);
+        if (simulation.needs.rims) lower_rises(simulation, step, rows);
         const auto relax = [&] {
             return run_pass(simulation, step, rows, Pass::kRelax,
                             effort_of_load(simulation, step, island));

@@ -90,12 +90,14 @@ Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const C
                      Cause cause);
 /// The same where the point at which a rim touches runs along it: see aim_rims(). It is no more
 /// than the slip and against it, so that a load turns that round at most, and adds no energy.
-/// @param place      of the contact in the list
+/// @param contacts   of a pair, in the list, of which the first on a rim counts
 /// @param velocity   of b against a there [m/s]
-inline Vec4 slip_on_rim(const StepData& step, std::size_t place, const Vec4& normal,
+inline Vec4 slip_on_rim(const StepData& step, Range contacts, const Vec4& normal,
                         const Vec4& velocity, Cause cause) {
     if (cause == Cause::kBlow || step.rim_slips.empty()) return Vec4::Zero();
-    const Vec4& all = step.rim_slips[step.contacts.run_of(place)];
+    std::size_t i = contacts.begin;
+    while (i + 1 < contacts.end && step.rim_slips[i] == Vec4::Zero()) ++i;
+    const Vec4& all = step.rim_slips[i];
     if (!(all.dot(velocity) > 0)) return Vec4::Zero();
     const double most = (velocity - normal.dot(velocity) * normal).norm(), length = all.norm();
     return length > most ? Vec4(most / length * all) : all;

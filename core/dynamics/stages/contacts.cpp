@@ -63,7 +63,7 @@ void begin_contacts(const Simulation& simulation, StepData& step) {
     step.residual.clear();
     if (!simulation.needs.rims) return;
     resize_anew(step.rises, step.contacts.size());
-    resize_anew(step.rim_slips, step.contacts.run_count());
+    resize_anew(step.rim_slips, step.contacts.size());
 }
 
 void recall_impulses(const Simulation& simulation, StepData& step, Range contacts) {

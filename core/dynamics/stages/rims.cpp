@@ -28,6 +28,8 @@ constexpr double kTooDeep = 10;
 /// How far a point over a face may be off it, as a part of the body's bounding radius: contacts are
 /// kept in float.
 constexpr double kOverFace = 1e-6;
+/// Of the angle between a contact's normal and that of a face that it is of: 1e-4 rad.
+constexpr double kFaceNormalCosine = 1 - 5e-9;
 /// Of the farthest point of a ball along a direction, what one on its rim has of that at least; and
 /// what the direction has in the ball's plane: less, and all of the rim is as far.
 constexpr double kOnRim = 1 - 1e-6, kLeans = 1e-5;
@@ -53,14 +55,25 @@ bool rolls(const Simulation& simulation, const StepData& step, BodyId id, BodyId
            type.arm * angle > kRolls * type.slop;
 }
 
-double distance_to(const Simulation& simulation, const StepData& step, BodyId id, const Vec4& p) {
+/// Whether a point of another body is straight over a face of this one.
+/// @param into     this one, the contact's normal
+/// @param height   of the point over it
+/// @param off      which that may be off by [m]
+bool is_over_face(const Simulation& simulation, const StepData& step, BodyId id, const Vec4& point,
+                  const Vec4& into, double height, double off) {
     return std::visit(
         [&]<class S>(const S& shape) {
-            if constexpr (S::kBounded)
-                return signed_distance(
-                    shape, to_matrix(step.rotor[id]).transpose() * (p - step.position[id]));
-            else
-                return signed_distance(shape, p);
+            if constexpr (!S::kBounded) {
+                return true;
+            } else if constexpr (HasFaces<S>) {
+                const Mat4 to_own = to_matrix(step.rotor[id]).transpose();
+                const Vec4 outward = to_own * -into;
+                return face_along(shape, outward).normal.dot(outward) >= kFaceNormalCosine &&
+                       std::abs(signed_distance(shape, to_own * (point - step.position[id])) -
+                                height) <= off;
+            } else {
+                return false;
+            }
         },
         simulation.bodies.type_of(id).shape);
 }
@@ -155,7 +168,8 @@ void add_ahead(const Simulation& simulation, const StepData& step, BodyId id, co
 void aim_rim(const Simulation& simulation, StepData& step, std::size_t n, bool is_a) {
     const ContactList::Run run = step.contacts.nth_run(n);
     const BodyId id = is_a ? run.a : run.b, on = is_a ? run.b : run.a;
-    if (!rolls(simulation, step, id, on)) return;
+    const unsigned alone = simulation.type_of(on).movable ? 1 : 0;
+    if (step.company[id] > alone || !rolls(simulation, step, id, on)) return;
     const BallProduct& shape = *ball_product(simulation, id);
     const Spin now = spin_now(simulation, step, run, id);
     if (norm(now.omega - step.angular_velocity[id]) > kMostTurned * norm(step.angular_velocity[id]))
@@ -163,21 +177,15 @@ void aim_rim(const Simulation& simulation, StepData& step, std::size_t n, bool i
     const Spin ahead = spin_ahead(simulation, step, id, now.omega);
     const Vec4 normal = step.contacts.normal(run.begin), out = is_a ? normal : Vec4(-normal);
     const double off = kOverFace * simulation.type_of(id).radius;
-    double deepest = kMiss;
-    Vec4 slip = Vec4::Zero();
     for (std::size_t i = run.begin; i < run.end; ++i) {
         const double separation = step.contacts.separation(i);
         const Vec4 point = step.contacts.point(i) - 0.5 * separation * out;
         const auto way = way_of(shape, now, ahead, step.h, point - step.position[id], out);
-        // Of a rim against a rim the normal turns too.
-        if (!way || std::abs(distance_to(simulation, step, on, point) - separation) > off) continue;
+        if (!way || !is_over_face(simulation, step, on, point, out, separation, off)) continue;
         step.rises[i] = std::max(0.0, way->nearer / step.h);
-        if (separation < deepest) {
-            deepest = separation;
-            slip = (is_a ? -0.5 : 0.5) * way->change;
-        }
+        const Vec4 slip = (is_a ? -0.5 : 0.5) * way->change;
+        step.rim_slips[i] = slip - normal.dot(slip) * normal;
     }
-    step.rim_slips[n] = slip - normal.dot(slip) * normal;
 }
 
 }  // namespace
@@ -187,13 +195,12 @@ void add_rim_ahead(const Simulation& simulation, const StepData& step, const Bod
     if (list.size() == first) return;
     for (const auto& [id, on] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)}) {
         if (simulation.type_of(on).movable || !rolls(simulation, step, id, on)) continue;
+        const Vec4 out = id == pair.a ? list[first].normal : Vec4(-list[first].normal);
         const double off = kOverFace * simulation.type_of(id).radius;
         const auto is_over = [&](const Vec4& point, double height) {
-            return std::abs(distance_to(simulation, step, on, point) - height) <= off;
+            return is_over_face(simulation, step, on, point, out, height, off);
         };
-        const Vec4 normal = list[first].normal;
-        return add_ahead(simulation, step, id, id == pair.a ? normal : Vec4(-normal), is_over,
-                         first, list);
+        return add_ahead(simulation, step, id, out, is_over, first, list);
     }
 }
 
@@ -205,11 +212,22 @@ void add_rim_ahead_on_plane(const Simulation& simulation, const StepData& step, 
         simulation, step, id, out, [](const Vec4&, double) { return true; }, 0, list);
 }
 
+void count_company(const Simulation& simulation, StepData& step) {
+    step.company.assign(simulation.bodies.size(), 0);
+    for (std::size_t n = 0; n < step.contacts.run_count(); ++n) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        if (!simulation.type_of(run.a).movable || !simulation.type_of(run.b).movable) continue;
+        for (const BodyId id : {run.a, run.b})
+            step.company[id] = static_cast<std::uint8_t>(std::min(step.company[id] + 1, 2));
+    }
+}
+
 void aim_rims(const Simulation& simulation, StepData& step, Range runs) {
     for (std::size_t n = runs.begin; n < runs.end; ++n) {
         const ContactList::Run run = step.contacts.nth_run(n);
         std::fill(step.rises.data() + run.begin, step.rises.data() + run.end, 0.0);
-        step.rim_slips[n].setZero();
+        std::fill(step.rim_slips.data() + run.begin, step.rim_slips.data() + run.end,
+                  Vec4(Vec4::Zero()));
         for (const bool is_a : {true, false}) aim_rim(simulation, step, n, is_a);
     }
 }

@@ -7,7 +7,11 @@
 
 namespace tesserae {
 
-/// step.rises and step.rim_slips of the runs of contacts in the range.
+/// step.company: how many other bodies that contacts move each one touches, up to two. What carries
+/// or leans on others does not roll freely.
+void count_company(const Simulation& simulation, StepData& step);
+
+/// step.rises and step.rim_slips of the contacts of the runs in the range.
 ///
 /// As a round body turns, the point at which it touches runs along its rim: that of a coin that
 /// wobbles down many times faster than its material moves there. Between the middles of two

@@ -174,11 +174,11 @@ struct StepData {
     ColouredIslands coloured;              ///< of the others
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: a blow pushed it
-    /// Of every contact, and of every run of them, where there are rims: see rise_of() and
-    /// slip_on_rim().
+    /// Of every contact, where there are rims: see rise_of() and slip_on_rim().
     std::vector<double> rises;
     std::vector<Vec4> rim_slips;
-    KeptImpulses recalled;  ///< what a sub-step leaves to the next of the step
+    std::vector<std::uint8_t> company;  ///< of every body, likewise: see count_company()
+    KeptImpulses recalled;              ///< what a sub-step leaves to the next of the step
     /// Of `impulses` and `recalled`, where there is rolling friction; see StepMemory.
     std::vector<Bivector> angular_impulses, recalled_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it

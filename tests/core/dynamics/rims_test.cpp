@@ -206,6 +206,7 @@ TEST(Rims, RiseByWhatTheirDeepestPointComesNearer) {
         step.contacts = ContactList(list);
         begin_contacts(simulation, step);
         for (ContactImpulse& impulse : step.impulses) impulse = {};
+        count_company(simulation, step);
         aim_rims(simulation, step, {0, step.contacts.run_count()});
 
         Rotor then = step.rotor[1];
