@@ -114,6 +114,30 @@ TEST(Rims, SteadyPrecessionIsOfSecondOrder) {
             }
 }
 
+struct Ride {
+    double start, least, most;   ///< energy [J]
+    double won = 0;              ///< the most since any time before [J]
+    double deepest = 0, height;  ///< overlap; of body 1 at the end [m]
+};
+Ride ride_of(const Bodies& bodies, int steps) {
+    PhysicsSettings settings;
+    settings.gravity = kDown;
+    World world(bodies, settings);
+    const auto energy = [&] {
+        return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
+    };
+    Ride ride;
+    ride.start = ride.least = ride.most = energy();
+    for (int i = 0; i < steps; ++i) {
+        ride.deepest = std::max(ride.deepest, world.step(kStep).penetration);
+        const double now = energy();
+        ride.least = std::min(ride.least, now), ride.most = std::max(ride.most, now);
+        ride.won = std::max(ride.won, now - ride.least);
+    }
+    ride.height = world.bodies().position[1][1];
+    return ride;
+}
+
 /// Upright at first and turned aside, as one that is pushed: it leans and rolls in circles. Without
 /// aim_rims() those of 2 cm gain 0.5 % of their energy a second, and more as long as they roll.
 TEST(Rims, WhatRollsInCirclesKeepsItsEnergy) {
@@ -125,22 +149,11 @@ TEST(Rims, WhatRollsInCirclesKeepsItsEnergy) {
             add(bodies, type_of(coin.shape, 0.6), radius * Vec4::UnitY(),
                 rate * radius * Vec4::UnitZ(), about({rate, -0.2 * rate, 0, 0}),
                 turned_to(coin, Vec4::UnitX()));
-            PhysicsSettings settings;
-            settings.gravity = kDown;
-            World world(bodies, settings);
-            const auto energy = [&] {
-                return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
-            };
-            const double start = energy();
-            double least = start, most = start, deepest = 0, highest = 0;
-            for (int i = 0; i < 5 * 240; ++i) {
-                deepest = std::max(deepest, world.step(kStep).penetration);
-                least = std::min(least, energy()), most = std::max(most, energy());
-                highest = world.bodies().position[1][1];
-            }
-            EXPECT_LT(most - least, 2e-3 * start) << radius << ' ' << coin.shape.index();
-            EXPECT_LT(deepest, 3e-4 * radius);
-            EXPECT_GT(highest, 0.5 * radius) << "it still rolls";
+            const Ride ride = ride_of(bodies, 5 * 240);
+            EXPECT_LT(ride.most - ride.least, 2e-3 * ride.start)
+                << radius << ' ' << coin.shape.index();
+            EXPECT_LT(ride.deepest, 3e-4 * radius);
+            EXPECT_GT(ride.height, 0.5 * radius) << "it still rolls";
         }
 }
 
@@ -158,21 +171,9 @@ TEST(Rims, WhatWobblesDownGainsNoEnergy) {
         add(bodies, type_of(coin.shape, friction), 0.7 * Vec4::UnitY(), -Vec4::UnitY(),
             {c[0], c[1], c[2], d[0], d[1], d[2]},
             exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]}));
-        PhysicsSettings settings;
-        settings.gravity = kDown;
-        World world(bodies, settings);
-        const auto energy = [&] {
-            return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
-        };
-        const double start = energy();
-        double least = start, won = 0, deepest = 0;
-        for (int step = 0; step < 360; ++step) {
-            deepest = std::max(deepest, world.step(kStep).penetration);
-            least = std::min(least, energy());
-            won = std::max(won, energy() - least);
-        }
-        EXPECT_LT(won, 5e-3 * start) << i << ", thickness " << thickness;
-        EXPECT_LT(deepest, 0.01) << i << ", thickness " << thickness;
+        const Ride ride = ride_of(bodies, 360);
+        EXPECT_LT(ride.won, 2e-3 * ride.start) << i << ", thickness " << thickness;
+        EXPECT_LT(ride.deepest, 0.01) << i << ", thickness " << thickness;
     }
 }
 
