@@ -9,6 +9,7 @@
 #include "core/dynamics/stages/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
@@ -145,7 +146,7 @@ SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& fi
     report.first_step = report.last_step = steps.back();
     if (how_served(scene, file, store_every) != Served::kWhole) {
         TrajectoryWriter writer(file, header_of(scene, store_every), steps, overwrite);
-        if (!writer.note().empty()) fmt::print(stderr, "tesserae: {}\n", writer.note());
+        if (!writer.note().empty()) tell(writer.note());
         store_rows(scene, plan, writer, steps, report, quiet, trace);
         writer.finish();
     }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include "scenes/process/messages.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -31,7 +31,7 @@ Progress::Progress(std::string what, std::string unit, std::uint64_t total, bool
       last_(begin_) {}
 
 Progress::~Progress() {
-    if (shown_ && terminal_) std::fputc('\n', stderr);
+    if (shown_ && terminal_) write_error("\n");
 }
 
 void Progress::start_at(std::uint64_t done) { start_ = done; }
@@ -54,11 +54,7 @@ void Progress::update(std::uint64_t done) {
     if (terminal_ ? !last && now - last_ < kTerminalInterval : now - last_ < kPlainInterval) return;
     last_ = now;
     shown_ = true;
-    if (terminal_)
-        fmt::print(stderr, "\r{}\033[K", line(done));
-    else
-        fmt::print(stderr, "{}\n", line(done));
-    std::fflush(stderr);
+    write_error(terminal_ ? "\r" + line(done) + "\033[K" : line(done) + "\n");
 }
 
 }  // namespace tesserae::scenes

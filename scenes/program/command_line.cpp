@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <sstream>
 
 #include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
@@ -13,6 +14,7 @@
 #include "scenes/generate/generate.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
+#include "scenes/process/messages.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -297,7 +299,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
-        app.exit(help);
+        std::ostringstream text;
+        app.exit(help, text, text);
+        put(text.str());
         return line;
     } catch (const CLI::ParseError& error) {
         throw InputError(fmt::format("{} (tesserae --help, or tesserae COMMAND --help, tells more)",

@@ -1,9 +1,8 @@
 #include "scenes/program/commands.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "scenes/plan/cost.hpp"
 #include "scenes/plan/in_slice.hpp"
 #include "scenes/plan/plan_picture.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
@@ -28,6 +28,7 @@
 namespace tesserae::scenes {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Json to_json(const InPicture& body) {
@@ -59,41 +60,36 @@ std::string gigabytes(auto bytes) {
 }
 
 void print_plan(const Plan& plan, const Cost& cost, std::uint64_t taken) {
-    fmt::print("bodies      {} ({} movable)\n", plan.bodies, plan.movable_bodies);
-    fmt::print(
-        "steps       {}{}\n", plan.steps,
-        plan.moves && taken < plan.steps ? fmt::format(" ({} to the last frame)", taken) : "");
-    fmt::print("frames      {}\n", plan.frames);
-    fmt::print("view rays   {}\n", plan.view_rays);
-    if (plan.moves) fmt::print("simulating  about {}\n", duration_text(cost.simulate_seconds));
-    fmt::print("rendering   about {}\n", duration_text(cost.render_seconds));
-    for (const std::string& text : cost.measured) fmt::print("measured    {}\n", text);
-    for (const std::string& text : cost.guessed) fmt::print("guessed     {}\n", text);
-    fmt::print("memory      {}\n", gigabytes(plan.memory_bytes));
-    fmt::print("trajectory  at most {}\n", gigabytes(plan.trajectory_bytes));
+    put_line("bodies      {} ({} movable)", plan.bodies, plan.movable_bodies);
+    put_line("steps       {}{}", plan.steps,
+             plan.moves && taken < plan.steps ? fmt::format(" ({} to the last frame)", taken) : "");
+    put_line("frames      {}", plan.frames);
+    put_line("view rays   {}", plan.view_rays);
+    const char* const rough = cost.is_rough() ? ", roughly" : "";
+    if (plan.moves) put_line("simulating  about {}{}", duration_text(cost.simulate_seconds), rough);
+    put_line("rendering   about {}{}", duration_text(cost.render_seconds), rough);
+    for (const std::string& text : cost.measured) put_line("measured    {}", text);
+    for (const std::string& text : cost.guessed) put_line("guessed     {}", text);
+    put_line("memory      {}", gigabytes(plan.memory_bytes));
+    put_line("trajectory  at most {}", gigabytes(plan.trajectory_bytes));
     if (plan.moves)
-        fmt::print("checkpoint  about {}, two of them until it is done\n",
-                   gigabytes(plan.checkpoint_bytes));
-    fmt::print("frames      about {}\n", gigabytes(cost.frame_bytes));
+        put_line("checkpoint  about {}, two of them until it is done",
+                 gigabytes(plan.checkpoint_bytes));
+    put_line("frames      about {}", gigabytes(cost.frame_bytes));
     for (const Decision& d : plan.decisions)
-        fmt::print("{:9}   {}: {}\n", d.needed ? "needed" : "left out", d.part, d.reason);
-    for (const std::string& warning : plan.warnings) fmt::print("warning     {}\n", warning);
+        put_line("{:9}   {}: {}", d.needed ? "needed" : "left out", d.part, d.reason);
+    for (const std::string& warning : plan.warnings) put_line("warning     {}", warning);
 }
 
 void print_names(const SliceReport& slice) {
     constexpr std::size_t kMostNames = 30;
     const std::size_t shown = std::min(kMostNames, slice.names.size());
-    for (std::size_t i = 0; i < shown; ++i) fmt::print("seen        {}\n", text_of(slice.names[i]));
+    for (std::size_t i = 0; i < shown; ++i) put_line("seen        {}", text_of(slice.names[i]));
     if (shown < slice.names.size())
-        fmt::print("seen        and {} names more (--json has all)\n", slice.names.size() - shown);
+        put_line("seen        and {} names more (--json has all)", slice.names.size() - shown);
 }
 
-/// The most that a plan takes of the user's time, and the least that it measures for [s].
-constexpr double kPlanSeconds = 4, kLeastMeasured = 1;
-
 void plan_command(const CommandLine& line) {
-    using Clock = std::chrono::steady_clock;
-    const auto begin = Clock::now();
     Work work(line);
     count_off_slice(work.scene, work.plan);
     warn_of_hidden_glass(work.scene, work.plan);
@@ -101,10 +97,8 @@ void plan_command(const CommandLine& line) {
     Cost cost;
     std::optional<SliceReport> slice;
     parallel::Threads(line.threads).run([&] {
-        const double left =
-            kPlanSeconds - std::chrono::duration<double>(Clock::now() - begin).count();
         cost = measure_cost(work.scene, work.plan, line.trajectory, frames,
-                            std::max(kLeastMeasured, left));
+                            measuring_seconds(work.scene));
         if (line.trajectory.empty() && work.plan.moves) return;
         slice = look_at_slice(work.scene, line.trajectory, frames);
         for (std::string& warning : slice->warnings)
@@ -120,12 +114,13 @@ void plan_command(const CommandLine& line) {
     json["steps_to_last_frame"] = taken;
     json["simulate_seconds"] = cost.simulate_seconds;
     json["render_seconds"] = cost.render_seconds;
+    json["rough"] = cost.is_rough();
     json["frame_bytes"] = cost.frame_bytes;
     json["measured"] = cost.measured;
     json["guessed"] = cost.guessed;
     if (slice)
         for (const InPicture& body : slice->names) json["in_picture"].push_back(to_json(body));
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    put_json(json);
 }
 
 void info_command(const CommandLine& line) {
@@ -134,26 +129,27 @@ void info_command(const CommandLine& line) {
         Json json = Json::object();
         for (const Fact& fact : facts) json[fact.name] = fact.value;
         // A file's texts need not be UTF-8.
-        fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+        put_json(json);
     } else {
-        for (const Fact& fact : facts) fmt::print("{:<24} {}\n", fact.name, fact.text);
+        for (const Fact& fact : facts) put_line("{:<24} {}", fact.name, fact.text);
     }
 }
 
 /// Says what is kept, after a signal.
 int report_stop() {
     const int signal = stop_signal();
-    fmt::print(
-        stderr,
-        "tesserae: stopped by signal {}; what is finished is kept, the same command continues\n",
-        signal);
+    tell(fmt::format("stopped by signal {}; what is finished is kept, the same command continues",
+                     signal));
     return 128 + signal;
 }
 
 }  // namespace
 
 void print_result(const CommandLine& line, const Json& json, const std::string& text) {
-    fmt::print("{}\n", line.json ? json.dump() : text);
+    if (line.json)
+        put_json(json);
+    else
+        put_line("{}", text);
 }
 
 int execute(const CommandLine& line) {
@@ -171,26 +167,41 @@ int execute(const CommandLine& line) {
     if (line.command == "submit") submit_command(line);
     if (line.command == "join") status = join_command(line);
     if (line.command == "status") status = status_command(line);
-    if (line.command == "generate") fmt::print("{}", generated_scene(line.generator, line.bodies));
-    if (std::fflush(stdout) != 0 || std::ferror(stdout))
-        throw RunError("standard output: cannot be written");
+    if (line.command == "generate") put(generated_scene(line.generator, line.bodies));
     return status;
 }
 
+namespace {
+
+/// A path that the system does not follow, for example a loop of links: the command line's fault
+/// where it was to be read, else that of the place.
+int report_path(const fs::filesystem_error& error, const CommandLine& line) {
+    tell(fmt::format("{}: {}", error.path1().string(), error.code().message()));
+    const bool is_input = error.path1().string().starts_with(line.file.string());
+    return is_input && !line.file.empty() ? 2 : 1;
+}
+
+}  // namespace
+
 int program(int argc, const char* const* argv) {
+    open_standard_streams();
     handle_signals();
+    CommandLine line;
     try {
-        return execute(parse_command_line(argc, argv));
+        line = parse_command_line(argc, argv);
+        return execute(line);
+    } catch (const fs::filesystem_error& error) {
+        return report_path(error, line);
     } catch (const Stopped&) {
         return report_stop();
     } catch (const InputError& error) {
-        fmt::print(stderr, "tesserae: {}\n", error.what());
+        tell(error.what());
         return 2;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "tesserae: out of memory\n");
+        tell("out of memory");
         return 1;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "tesserae: {}\n", error.what());
+        tell(error.what());
         return 1;
     }
 }

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "parallel/threads.hpp"
 #include "scenes/compare/difference.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 
 namespace tesserae::scenes {
@@ -96,11 +96,6 @@ Json to_json(const Difference& difference, const CommandLine& line) {
     return json;
 }
 
-/// Names in damaged files need not be UTF-8.
-void print(const Json& json) {
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
 }  // namespace
 
 void hash_command(const CommandLine& line) {
@@ -111,15 +106,14 @@ void hash_command(const CommandLine& line) {
         parallel::Threads(line.threads).run([&] { content = read_content(path); });
         hashes.push_back(to_json(content, file));
         if (line.json) continue;
-        fmt::print("{}  {}\n", content.hash(), file);
+        put_line("{}  {}", content.hash(), file);
         if (content.kind == FileKind::kScene)
-            fmt::print("{}  {} (motion)\n", content.entries.back().hash, file);
-        std::fflush(stdout);
+            put_line("{}  {} (motion)", content.entries.back().hash, file);
     }
     if (!line.json) return;
     Json json;
     json["hashes"] = std::move(hashes);
-    print(json);
+    put_json(json);
 }
 
 int diff_command(const CommandLine& line) {
@@ -128,9 +122,9 @@ int diff_command(const CommandLine& line) {
         difference = compare(line.files[0], line.files[1]);
     });
     if (line.json)
-        print(to_json(difference, line));
+        put_json(to_json(difference, line));
     else
-        fmt::print("{}\n", text_of(difference));
+        put_line("{}", text_of(difference));
     return difference.is_equal() ? 0 : 1;
 }
 

@@ -1,6 +1,6 @@
 #include "scenes/program/farm_commands.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +10,7 @@
 #include "scenes/farm/status.hpp"
 #include "scenes/farm/submit.hpp"
 #include "scenes/load/load.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/shell_word.hpp"
 #include "scenes/timeline.hpp"
@@ -25,9 +26,11 @@ void print_commands(const FarmReport& report) {
         return shell_word(std::filesystem::absolute(report.scripts / name).string());
     };
     if (report.moves)
-        fmt::print(stderr, "before all others, once: bash {}\n", script("simulate.sh"));
-    for (const std::string& command : report.commands) fmt::print("{}\n", command);
-    fmt::print(stderr, "after all others, once:  bash {}\n", script("finish.sh"));
+        write_error(terminal_text(
+            fmt::format("before all others, once: bash {}\n", script("simulate.sh"))));
+    put_line("{}", fmt::join(report.commands, "\n"));
+    write_error(
+        terminal_text(fmt::format("after all others, once:  bash {}\n", script("finish.sh"))));
 }
 
 FarmJson submit_json(const FarmReport& report) {
@@ -49,17 +52,17 @@ void submit_command(const CommandLine& line) {
         FarmJson json = submit_json(report);
         if (line.farm.kind == "commands") json["commands"] = report.commands;
         if (line.farm.now) json["slurm"] = said;
-        fmt::print("{}\n", json.dump(-1, ' ', false, FarmJson::error_handler_t::replace));
+        put_json(json);
     } else if (line.farm.kind == "commands") {
         print_commands(report);
     } else {
         const FarmEstimate& e = report.estimate;
-        fmt::print("{} tasks of up to {} frames, each on {} cores with {} MB for at most {}\n",
-                   report.commands.size(), e.chunk, e.cores, e.memory_mib,
-                   duration_text(60.0 * e.frame_minutes));
-        fmt::print("{}\n", line.farm.now ? said
-                                         : "to submit: bash " +
-                                               shell_word((report.scripts / "submit.sh").string()));
+        put_line("{} tasks of up to {} frames, each on {} cores with {} MB for at most {}",
+                 report.commands.size(), e.chunk, e.cores, e.memory_mib,
+                 duration_text(60.0 * e.frame_minutes));
+        put_line("{}", line.farm.now ? said
+                                     : "to submit: bash " +
+                                           shell_word((report.scripts / "submit.sh").string()));
     }
 }
 
@@ -72,20 +75,26 @@ int join_command(const CommandLine& line) {
     JoinReport report;
     parallel::Threads(line.threads).run([&] { report = join_folder(line.file); });
     if (line.json)
-        fmt::print("{}\n",
-                   FarmJson({{"joined", report.joined}, {"missing", report.missing}}).dump());
+        put_json({{"joined", report.joined},
+                  {"removed", report.removed},
+                  {"missing", report.missing},
+                  {"wrong", report.wrong}});
     else
-        fmt::print("{} frames joined\n", report.joined);
+        put_line("{} frames joined{}", report.joined,
+                 report.removed > 0
+                     ? fmt::format(", {} parts of whole frames removed", report.removed)
+                     : "");
     for (const std::string& missing : report.missing)
-        fmt::print(stderr, "tesserae: {} are missing: tesserae render --tiles makes them\n",
-                   missing);
+        tell(fmt::format("{} are missing: tesserae render --tiles makes them", missing));
+    for (const std::string& wrong : report.wrong) tell(wrong);
+    if (!report.wrong.empty()) return 2;
     return report.missing.empty() ? 0 : 1;
 }
 
 int status_command(const CommandLine& line) {
     const FilmStatus s = film_status(line.file);
     if (!line.json) {
-        if (!line.quiet) fmt::print("{}\n", status_text(s, line.file));
+        if (!line.quiet) put_line("{}", status_text(s, line.file));
         return s.is_complete() ? 0 : 1;
     }
     const auto number = [](const auto& value) { return value ? FarmJson(*value) : FarmJson(); };
@@ -102,7 +111,7 @@ int status_command(const CommandLine& line) {
                            {"seconds_left", number(s.seconds_left)},
                            {"command", s.command},
                            {"submit", s.submit}};
-    fmt::print("{}\n", json.dump(-1, ' ', false, FarmJson::error_handler_t::replace));
+    put_json(json);
     return s.is_complete() ? 0 : 1;
 }
 

@@ -13,6 +13,7 @@
 #include "scenes/film/simulate.hpp"
 #include "scenes/plan/cost.hpp"
 #include "scenes/plan/in_slice.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/shell_word.hpp"
 #include "scenes/process/signals.hpp"
@@ -106,8 +107,7 @@ class Filming {
             work_ = Work(line_);
         }
         frames_ = parse_frames(line.frames, frame_count(work_.scene));
-        if (line.draft && line.frames.empty())
-            std::erase_if(frames_, [](int frame) { return frame % kDraftStride != 0; });
+        if (line.draft && line.frames.empty()) frames_ = draft_frames();
         require_memory(work_.plan, work_.scene);
     }
 
@@ -122,6 +122,10 @@ class Filming {
             if (is_run_ && is_new) tell_cost();
             if (simulates) text = simulated(json["simulate"]) + "\n";
             if (is_run_ && (is_new || is_changed)) tell_slice();
+            if (line_.draft) {
+                create_folder(folder_);
+                write_file(folder_ / kFramesFile, frames_text(draft_frames()) + "\n");
+            }
             filmed =
                 film(scene(), frames_, trajectory_, folder_, replace_, line_.quiet, line_.tiles);
         });
@@ -138,8 +142,14 @@ class Filming {
   private:
     const Scene& scene() const { return work_.scene; }
 
+    std::vector<int> draft_frames() const {
+        std::vector<int> frames = parse_frames("", frame_count(scene()));
+        std::erase_if(frames, [](int frame) { return frame % kDraftStride != 0; });
+        return frames;
+    }
+
     void tell(const std::string& text) const {
-        if (!line_.quiet) fmt::print(stderr, "tesserae: {}\n", text);
+        if (!line_.quiet) scenes::tell(text);
     }
 
     bool tell_changed_look() const {
@@ -157,12 +167,20 @@ class Filming {
             for (const std::string& warning : work_.plan.warnings)
                 tell(fmt::format("warning: {}", warning));
         if (fs::exists(line_.output / "trajectory.h5")) return;
-        constexpr double kSeconds = 1;
-        const Cost cost = measure_cost(scene(), work_.plan, {}, frames_, kSeconds);
-        tell(
-            fmt::format("about {} to simulate and {} to render{}",
-                        duration_text(cost.simulate_seconds), duration_text(cost.render_seconds),
-                        cost.guessed.empty() ? "" : ", partly a guess (tesserae plan tells more)"));
+        constexpr double kMostSeconds = 1;
+        Cost cost;
+        try {
+            cost = measure_cost(scene(), work_.plan, {}, frames_,
+                                std::min(kMostSeconds, measuring_seconds(scene())));
+        } catch (const std::exception& error) {
+            // An estimate never ends a run; what is really wrong the run itself will meet.
+            if (stop_requested()) throw;
+            tell(fmt::format("no estimate of the time: {}", error.what()));
+            return;
+        }
+        tell(fmt::format("about {} to simulate and {} to render{}",
+                         duration_text(cost.simulate_seconds), duration_text(cost.render_seconds),
+                         cost.is_rough() ? ", partly a guess (tesserae plan tells more)" : ""));
     }
 
     /// When bodies are in the picture, and what is wrong with that.
@@ -205,8 +223,7 @@ class Filming {
     /// The film of all frames, where they are there. @return a line
     std::string movie(Json& json) {
         const std::vector<int> there = preview_numbers(scene(), folder_);
-        const std::size_t count = static_cast<std::size_t>(frame_count(scene()));
-        const std::size_t wanted = line_.draft ? (count + kDraftStride - 1) / kDraftStride : count;
+        const std::size_t wanted = wanted_frames(scene(), folder_).size();
         if (wanted < 2) return {};
         if (there.size() != wanted)
             return fmt::format("\nfilm:    not made: {} of {} frames are there", there.size(),

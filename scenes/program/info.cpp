@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "render/file/image_info.hpp"
+#include "render/file/whole_image.hpp"
 #include "scenes/compare/file_kind.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
@@ -189,6 +190,9 @@ Json json_of(const render::ImageAttribute& attribute) {
 
 Facts image_facts(const std::filesystem::path& file) {
     const render::ImageInfo image = render::read_image_info(file);
+    if (!render::is_whole_image(file))
+        throw InputError(fmt::format(
+            "{}: is cut off: it ends before the pixels that its header tells of", file.string()));
     Facts facts = {
         text("kind", "image"),
         {"size", {image.width, image.height}, fmt::format("{}x{}", image.width, image.height)},

@@ -10,6 +10,7 @@
 #include "scenes/export/export.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plot/plot.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
@@ -43,9 +44,9 @@ Json to_json(const ExportReport& report, const CommandLine& line) {
 void plot_command(const CommandLine& line) {
     const bool is_new = plot(line.file, line.output, line.overwrite);
     if (line.json)
-        fmt::print("{}\n", Json{{"file", line.output.string()}, {"written", is_new}}.dump());
+        put_json({{"file", line.output.string()}, {"written", is_new}});
     else
-        fmt::print("{}{}\n", line.output.string(), is_new ? "" : ": complete already");
+        put_line("{}{}", line.output.string(), is_new ? "" : ": complete already");
 }
 
 void export_command(const CommandLine& line) {
@@ -60,10 +61,10 @@ void export_command(const CommandLine& line) {
                                line.quiet);
     });
     if (line.json)
-        fmt::print("{}\n", to_json(report, line).dump());
+        put_json(to_json(report, line));
     else
-        fmt::print("{} frames written, {} kept, {}\nopen:   {}\n", report.written, report.kept,
-                   duration_text(report.seconds), report.first_to_open.string());
+        put_line("{} frames written, {} kept, {}\nopen:   {}", report.written, report.kept,
+                 duration_text(report.seconds), report.first_to_open.string());
 }
 
 }  // namespace tesserae::scenes
