@@ -79,14 +79,10 @@ void render_tiles(const FrameScene& scene, const Crop& window, int tile_size,
 }
 
 /// A whole part is there that would be made of the same; another is an error, unless it is to be
-/// replaced.
+/// replaced. A damaged one is made again.
 bool is_part_done(const PartInfo& info, const std::filesystem::path& file, bool overwrite) {
-    if (!std::filesystem::exists(file)) return false;
-    try {
-        if (read_part_info(file).goes_with(info)) return true;
-    } catch (const InputError&) {
-        if (!overwrite) throw;
-    }
+    if (!std::filesystem::exists(file) || !damage_of_part(file).empty()) return false;
+    if (read_part_info(file).goes_with(info)) return true;
     if (overwrite) return false;
     throw InputError(
         fmt::format("{}: is a part of another frame; choose another folder, or "

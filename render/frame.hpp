@@ -23,7 +23,8 @@ struct FramePart {
 };
 
 /// Renders a part of a frame into a file from which, with the others, join_parts() makes what
-/// render_frame() would have made. A whole file of this part of this frame is kept.
+/// render_frame() would have made. A whole file of this part of this frame is kept, a damaged one
+/// made again.
 /// @return nothing if it was there
 /// @throws InputError   a part of another frame is there and not `overwrite`; else as render_frame
 std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& info,

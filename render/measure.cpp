@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 
 /// So many tiles are looked at, so that their lists stay small.
 constexpr std::size_t kMostTiles = 512;
+/// Sides of a tile [pixels] and samples in it, at most, usual 32 and 16,384: what a plan waits for
+/// at least is one such tile a thread.
+constexpr int kMostSide = 64, kMostSamples = 1 << 15;
 /// A file of this size tells what syncing costs.
 constexpr double kMostSynced = 4e6;
 
@@ -40,6 +43,29 @@ class Watch {
   private:
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
+
+/// Settings of a frame that costs less, and how many times as much the samples of the real one
+/// cost.
+struct Lighter {
+    Settings settings;
+    double times = 1;
+};
+
+/// Samples cost alike, so that some of them tell what all cost. A pixel's error falls with the root
+/// of its samples: with a target that is as much larger it takes as many times fewer.
+Lighter lighter(const Settings& settings) {
+    Lighter less{settings};
+    Settings& s = less.settings;
+    s.tile = std::min(s.tile, kMostSide);
+    const int most = std::max(1, kMostSamples / (s.tile * s.tile));
+    if (settings.most_samples() <= most) return less;
+    const double part = static_cast<double>(most) / settings.most_samples();
+    s.samples = std::max(1, static_cast<int>(part * settings.samples));
+    s.max_samples = most;
+    less.times = static_cast<double>(settings.most_samples()) / s.most_samples();
+    s.noise_target *= std::sqrt(less.times);
+    return less;
+}
 
 /// Every so many of a frame's tiles; `all` counts them.
 std::vector<Tile> some_tiles(const FrameScene& scene, const Settings& settings, std::size_t& all) {
@@ -80,9 +106,13 @@ void write_and_remove(const fs::path& file, double bytes) {
 
 }  // namespace
 
-FrameCost measure_frame(const Picture& picture, const FrameInfo& info, double seconds,
+FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seconds,
                         const fs::path& folder, const std::atomic<bool>& stop) {
-    const Settings& settings = picture.settings;
+    const Lighter less = lighter(whole.settings);
+    const Settings& settings = less.settings;
+    const Picture picture = {whole.bodies, whole.appearance, whole.materials, whole.camera,
+                             whole.lights, settings,         whole.path,      whole.frame,
+                             whole.next,   whole.last,       whole.mattes};
     FrameCost cost;
     Watch watch;
     const FrameScene scene(picture, true);
@@ -96,13 +126,28 @@ FrameCost measure_frame(const Picture& picture, const FrameInfo& info, double se
     const std::vector<std::size_t> order = spread_order(tiles.size());
     std::vector<TileImage> images(8 * threads);
     std::vector<PackedTile> packed(images.size());
-    while (cost.rendered < tiles.size() && (cost.rendered == 0 || cost.tiles < seconds)) {
-        const std::size_t count = std::min(images.size(), tiles.size() - cost.rendered);
+    std::vector<double> rendering(images.size()), packing(images.size());
+    double spent = 0;
+    while (cost.rendered < tiles.size() && (cost.rendered == 0 || spent < seconds)) {
+        // The first ones show how long a tile takes.
+        const std::size_t most = cost.rendered == 0 ? threads : images.size();
+        const std::size_t count = std::min(most, tiles.size() - cost.rendered);
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            Watch own;
             images[i] = render_tile(scene, tiles[order[cost.rendered + i]], stop);
+            rendering[i] = own.lap();
             packed[i] = image.pack(images[i]);
+            packing[i] = own.lap();
         });
-        cost.tiles += watch.lap();
+        const double lap = watch.lap();
+        const auto sum = [&](const std::vector<double>& seconds_of) {
+            return std::accumulate(seconds_of.begin(),
+                                   seconds_of.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
+        };
+        const double work = sum(rendering) + sum(packing);
+        const double share = work > 0 ? sum(rendering) / work : 0;
+        spent += lap;
+        cost.tiles += lap * (1 + share * (less.times - 1));
         for (std::size_t i = 0; i < count; ++i) {
             image.write(packed[i]);
             small.add(images[i]);

@@ -10,7 +10,7 @@ namespace tesserae::render {
 /// What render_frame() would cost, from some of a frame's tiles.
 struct FrameCost {
     double before = 0;                  ///< trees and lists [s]
-    double tiles = 0;                   ///< those that were rendered, on all threads [s]
+    double tiles = 0;                   ///< what those cost that were measured, on all threads [s]
     double after = 0;                   ///< the preview and what a file costs beside its tiles [s]
     double bytes = 0;                   ///< of the image, all tiles
     std::size_t rendered = 0, all = 0;  ///< tiles
@@ -20,7 +20,8 @@ struct FrameCost {
     }
 };
 
-/// Renders tiles all over a frame until about `seconds` have passed; leaves no file.
+/// Renders tiles all over a frame until about `seconds` have passed, with fewer samples where there
+/// are many; leaves no file. One tile a thread is rendered whatever the time.
 /// @param folder   for a file meanwhile
 /// @throws as render_frame()
 FrameCost measure_frame(const Picture& picture, const FrameInfo& info, double seconds,

@@ -168,4 +168,21 @@ std::vector<int> parse_frames(const std::string& text, int count) {
     return frames;
 }
 
+std::string frames_text(const std::vector<int>& frames) {
+    std::string text;
+    for (std::size_t i = 0; i < frames.size();) {
+        // Frames that are equally far apart: two beside each other are a range, else three.
+        const int stride = i + 1 < frames.size() ? frames[i + 1] - frames[i] : 1;
+        std::size_t last = i;
+        while (last + 1 < frames.size() && frames[last + 1] - frames[last] == stride) ++last;
+        if (stride > 1 && last < i + 2) last = i;
+        if (!text.empty()) text += ',';
+        text += fmt::format("{}", frames[i]);
+        if (last > i) text += fmt::format("-{}", frames[last]);
+        if (last > i && stride > 1) text += fmt::format("x{}", stride);
+        i = last + 1;
+    }
+    return text;
+}
+
 }  // namespace tesserae::scenes

@@ -47,4 +47,8 @@ std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vecto
 /// @throws InputError   bad syntax, or a frame that the scene does not have
 std::vector<int> parse_frames(const std::string& text, int count);
 
+/// A list of frames in the form of --frames: "3,7-9,12-20x2".
+/// @param frames   ascending, without repeats
+std::string frames_text(const std::vector<int>& frames);
+
 }  // namespace tesserae::scenes

@@ -1,20 +1,28 @@
 #include "render/file/part_file.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <memory>
+#include <new>
 
 #include "core/error.hpp"
+#include "render/file/whole_image.hpp"
 
 namespace tesserae::render {
 namespace {
 
 /// Format: this text; a PartHeader; the EXR header; per tile its index by rows, the count of its
 /// bytes and the bytes; an index of kNoMore; the preview's sums, all of them the part has touched
-/// in runs of first, count, sums; kEnd. Numbers are little-endian.
-constexpr std::array<char, 16> kMagic = {"tesserae tiles1"};
-constexpr std::uint64_t kNoMore = ~std::uint64_t{0}, kEnd = 0x2e646e65;
+/// in runs of first, count, sums; kNoMore; the checksum of all bytes before it. Numbers are
+/// little-endian.
+constexpr std::array<char, 16> kMagic = {"tesserae tiles2"};
+constexpr std::uint64_t kNoMore = ~std::uint64_t{0};
+/// As Settings allow it.
+constexpr int kMostPixels = 65536;
 
 struct PartHeader {
     std::int32_t number = 0, count = 0;
@@ -23,10 +31,25 @@ struct PartHeader {
     std::uint64_t header_bytes = 0;
 };
 
-template <class T>
-void put(FileWriter& out, const T& value) {
-    out.write(&value, sizeof value);
-}
+/// Of bytes in the order in which they are added. Finds what a disk or a network has changed, not
+/// what somebody has forged.
+class Checksum {
+  public:
+    Checksum() : state_(XXH3_createState()) {
+        if (!state_) throw std::bad_alloc();
+        XXH3_64bits_reset(state_.get());
+    }
+    void add(const void* bytes, std::size_t count) {
+        XXH3_64bits_update(state_.get(), bytes, count);
+    }
+    std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
+
+  private:
+    struct Free {
+        void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+    };
+    std::unique_ptr<XXH3_state_t, Free> state_;
+};
 
 /// Reads a part from its beginning to its end.
 class PartReader {
@@ -42,8 +65,10 @@ class PartReader {
         info.window = {head.x0, head.y0, head.x1, head.y1};
         info.tiles = head.tiles;
         info.exr_header = bytes<std::string>(head.header_bytes);
-        if (head.number < 1 || head.number > head.count || head.x0 >= head.x1 ||
-            head.y0 >= head.y1 || head.tiles > head.header_bytes / sizeof(std::uint64_t))
+        const bool is_window = 0 <= head.x0 && head.x0 < head.x1 && head.x1 <= kMostPixels &&
+                               0 <= head.y0 && head.y0 < head.y1 && head.y1 <= kMostPixels;
+        if (head.number < 1 || head.number > head.count || !is_window ||
+            head.tiles > head.header_bytes / sizeof(std::uint64_t))
             bad("its numbers make no sense");
     }
 
@@ -55,32 +80,34 @@ class PartReader {
             tile(PackedTile{index, bytes<std::vector<char>>(get<std::uint64_t>())});
         }
     }
-    /// After the tiles.
-    void read_sums(Preview& preview) {
+    /// After the tiles; ends with the checksum.
+    /// @param add(first, sums)   false if the preview has no such pixels
+    template <class Add>
+    void read_sums(Add&& add) {
         for (auto first = get<std::uint64_t>(); first != kNoMore; first = get<std::uint64_t>()) {
             const auto count = get<std::uint64_t>();
             if (count > left_ / sizeof(Preview::Sum)) bad("it is cut off");
             std::vector<Preview::Sum> sums(count);
             take(sums.data(), count * sizeof(Preview::Sum));
-            if (!preview.add_sums(first, sums)) bad("its preview does not fit");
+            if (!add(first, std::span<const Preview::Sum>(sums))) bad("its preview does not fit");
         }
-        if (get<std::uint64_t>() != kEnd || left_ != 0) bad("it does not end as one");
+        const std::uint64_t expected = checksum_.value();
+        if (get<std::uint64_t>() != expected) bad("its checksum is that of other bytes");
+        if (left_ != 0) bad("it does not end as one");
     }
 
     PartInfo info;
 
   private:
     [[noreturn]] void bad(const std::string& why) const {
-        throw InputError(
-            fmt::format("{}: not a whole part of a frame: {}; remove it and render "
-                        "that part again",
-                        path_.string(), why));
+        throw InputError(fmt::format("{}: not a whole part of a frame: {}", path_.string(), why));
     }
     void take(void* to, std::uint64_t count) {
         if (count > left_) bad("it is cut off");
         left_ -= count;
         if (!in_.read(static_cast<char*>(to), static_cast<std::streamsize>(count)))
             bad("it cannot be read");
+        checksum_.add(to, count);
     }
     template <class T>
     T get() {
@@ -99,6 +126,7 @@ class PartReader {
     std::filesystem::path path_;
     std::ifstream in_;
     std::uint64_t left_;
+    Checksum checksum_;
 };
 
 /// An EXR file of what others have compressed: the header, tiles in the order of the calls, and the
@@ -134,40 +162,78 @@ class JoinedImage {
 
 }  // namespace
 
-PartWriter::PartWriter(const std::filesystem::path& path, const PartInfo& info) : writer_(path) {
+struct PartWriter::File {
+    FileWriter writer;
+    Checksum checksum;
+
+    explicit File(const std::filesystem::path& path) : writer(path) {}
+
+    void put_bytes(const void* bytes, std::size_t count) {
+        writer.write(bytes, count);
+        checksum.add(bytes, count);
+    }
+    template <class T>
+    void put(const T& value) {
+        put_bytes(&value, sizeof value);
+    }
+};
+
+PartWriter::PartWriter(const std::filesystem::path& path, const PartInfo& info)
+    : file_(std::make_unique<File>(path)) {
     const Crop& w = info.window;
-    put(writer_, kMagic);
-    put(writer_, PartHeader{info.part.number, info.part.count, w.x0, w.y0, w.x1, w.y1, info.tiles,
-                            info.exr_header.size()});
-    writer_.write(info.exr_header.data(), info.exr_header.size());
+    file_->put(kMagic);
+    file_->put(PartHeader{info.part.number, info.part.count, w.x0, w.y0, w.x1, w.y1, info.tiles,
+                          info.exr_header.size()});
+    file_->put_bytes(info.exr_header.data(), info.exr_header.size());
 }
 
+PartWriter::~PartWriter() = default;
+
 void PartWriter::write(const PackedTile& tile) {
-    put(writer_, tile.index);
-    put(writer_, std::uint64_t{tile.bytes.size()});
-    writer_.write(tile.bytes.data(), tile.bytes.size());
+    file_->put(tile.index);
+    file_->put(std::uint64_t{tile.bytes.size()});
+    file_->put_bytes(tile.bytes.data(), tile.bytes.size());
 }
 
 void PartWriter::finish(const Preview& preview) {
-    put(writer_, kNoMore);
+    file_->put(kNoMore);
     // A part has touched little of the whole: runs of what is not 0.
     const std::span<const Preview::Sum> sums = preview.sums();
     for (std::size_t i = 0; i < sums.size();) {
         std::size_t end = i;
         while (end < sums.size() && sums[end] != Preview::Sum{}) ++end;
         if (end > i) {
-            put(writer_, std::uint64_t{i});
-            put(writer_, std::uint64_t{end - i});
-            writer_.write(&sums[i], (end - i) * sizeof(Preview::Sum));
+            file_->put(std::uint64_t{i});
+            file_->put(std::uint64_t{end - i});
+            file_->put_bytes(&sums[i], (end - i) * sizeof(Preview::Sum));
         }
         i = end + 1;
     }
-    put(writer_, kNoMore);
-    put(writer_, kEnd);
-    writer_.finish();
+    file_->put(kNoMore);
+    file_->put(file_->checksum.value());
+    file_->writer.finish();
 }
 
 PartInfo read_part_info(const std::filesystem::path& file) { return PartReader(file).info; }
+
+std::string damage_of_part(const std::filesystem::path& file) {
+    try {
+        PartReader part(file);
+        part.read_tiles([](const PackedTile&) {});
+        part.read_sums([](std::uint64_t, std::span<const Preview::Sum>) { return true; });
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+bool is_made_of(const std::filesystem::path& exr, const PartInfo& info) {
+    // The image's header begins as the part has it; its table of tiles is filled in.
+    std::string header(info.exr_header.size() - info.tiles * sizeof(std::uint64_t), '\0');
+    std::ifstream in(exr, std::ios::binary);
+    in.read(header.data(), static_cast<std::streamsize>(header.size()));
+    return in && info.exr_header.starts_with(header) && is_whole_image(exr);
+}
 
 void join_parts(std::span<const std::filesystem::path> parts, const std::filesystem::path& exr,
                 const std::filesystem::path& preview) {
@@ -182,7 +248,9 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
                                          parts[i].string(), i + 1, parts.size(),
                                          parts.front().string()));
         part.read_tiles([&](const PackedTile& tile) { image.write(tile); });
-        part.read_sums(small);
+        part.read_sums([&](std::uint64_t first, std::span<const Preview::Sum> sums) {
+            return small.add_sums(first, sums);
+        });
     }
     if (!image.is_whole())
         throw InputError(fmt::format("{}: its parts lack tiles", parts.front().string()));

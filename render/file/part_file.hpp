@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "core/file/file_writer.hpp"
 #include "render/file/exr_writer.hpp"
 #include "render/file/preview.hpp"
 #include "render/frame.hpp"
@@ -28,22 +28,33 @@ struct PartInfo {
     }
 };
 
-/// Writes a part of a frame: the frame's own EXR header, tiles as the image will hold them, and the
-/// part's share of the preview's sums. Without finish() nothing is left.
+/// Writes a part of a frame: the frame's own EXR header, tiles as the image will hold them, the
+/// part's share of the preview's sums, and a checksum. Without finish() nothing is left.
 class PartWriter {
   public:
     /// @throws RunError   as FileWriter
     PartWriter(const std::filesystem::path& path, const PartInfo& info);
+    ~PartWriter();
 
     void write(const PackedTile& tile);
     void finish(const Preview& preview);
 
   private:
-    FileWriter writer_;
+    struct File;
+    std::unique_ptr<File> file_;
 };
 
-/// @throws InputError   not a whole part file
+/// Reads what a part says of itself, not its tiles.
+/// @throws InputError   it does not begin as a part
 PartInfo read_part_info(const std::filesystem::path& file);
+
+/// What is wrong with a part's file, with its path: it is cut off, or its checksum is not that of
+/// its bytes. Empty where it is whole.
+std::string damage_of_part(const std::filesystem::path& file);
+
+/// Returns whether a whole image is the frame that a part belongs to.
+/// @throws InputError   as is_whole_image()
+bool is_made_of(const std::filesystem::path& exr, const PartInfo& info);
 
 /// Makes the frame and its preview, with the bytes of rendering it at once.
 /// @param parts   all parts of the frame, in their order

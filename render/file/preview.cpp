@@ -84,17 +84,27 @@ Preview::Preview(const Crop& window, double exposure)
     sums_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
 }
 
+Preview::Sum& Preview::sum_at(int x, int y) {
+    const auto column = static_cast<std::size_t>((x - window_.x0) / factor_);
+    const auto row = static_cast<std::size_t>((y - window_.y0) / factor_);
+    return sums_[row * static_cast<std::size_t>(width_) + column];
+}
+
+std::uint32_t Preview::steps_of(float value) const {
+    const double v = gain_ * static_cast<double>(value);
+    return static_cast<std::uint32_t>(std::lround(kOne * std::clamp(v, 0.0, 1.0)));
+}
+
+void Preview::add(int x, int y, float red, float green, float blue) {
+    Sum& sum = sum_at(x, y);
+    sum[0] += steps_of(red), sum[1] += steps_of(green), sum[2] += steps_of(blue);
+}
+
 void Preview::add(const TileImage& tile) {
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x) {
-            const auto column = static_cast<std::size_t>((x - window_.x0) / factor_);
-            const auto row = static_cast<std::size_t>((y - window_.y0) / factor_);
-            auto& sum = sums_[row * static_cast<std::size_t>(width_) + column];
             const Pixel& pixel = tile.at(x, y);
-            for (std::size_t i = 0; i < 3; ++i) {
-                const double v = gain_ * static_cast<double>(static_cast<float>(pixel.color[i]));
-                sum[i] += static_cast<std::uint32_t>(std::lround(kOne * std::clamp(v, 0.0, 1.0)));
-            }
+            add(x, y, pixel.color[0], pixel.color[1], pixel.color[2]);
         }
 }
 

@@ -20,6 +20,8 @@ class Preview {
     Preview(const Crop& window, double exposure);
 
     void add(const TileImage& tile);
+    /// Adds one pixel of the window, as the image file holds it.
+    void add(int x, int y, float red, float green, float blue);
     /// @throws RunError   the file cannot be written
     void write(const std::filesystem::path& path) const;
 
@@ -35,6 +37,8 @@ class Preview {
     int height() const { return height_; }
 
   private:
+    Sum& sum_at(int x, int y);
+    std::uint32_t steps_of(float value) const;
     std::vector<std::uint8_t> codes() const;  ///< sRGB, row by row
 
     Crop window_;

@@ -19,10 +19,12 @@ T number(std::istream& in) {
     return value;
 }
 
-/// Skips magic number, version and the header's attributes (OpenEXR's "File Layout": each a name, a
-/// type, a size and as many bytes; an empty name ends them).
+/// Flags of the version (OpenEXR's "File Layout").
+constexpr std::uint32_t kTiled = 0x200, kDeep = 0x800, kSeveralParts = 0x1000;
+
+/// Skips the header's attributes (each a name, a type, a size and as many bytes; an empty name ends
+/// them).
 void skip_header(std::istream& in) {
-    in.seekg(8);
     for (std::string name, type; std::getline(in, name, '\0') && !name.empty();) {
         std::getline(in, type, '\0');
         in.seekg(number<std::int32_t>(in), std::ios::cur);
@@ -35,21 +37,26 @@ bool is_whole_image(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (number<std::uint32_t>(in) != 20000630u || !in)
         throw InputError(fmt::format("{}: not a readable OpenEXR image", file.string()));
+    const auto version = number<std::uint32_t>(in);
+    if ((version & (kDeep | kSeveralParts)) != 0) return true;
     skip_header(in);
     const auto begin = static_cast<std::uint64_t>(in.tellg());
     const std::uint64_t size = std::filesystem::file_size(file);
     if (!in) return false;
-    // The table ends where the first tile begins, and that is the least number in it.
+    // The table ends where the first of them begins, and that is the least number in it.
     std::uint64_t first = size, last = 0;
     for (std::uint64_t at = begin; at + sizeof(std::uint64_t) <= first; at += sizeof at) {
         const auto offset = number<std::uint64_t>(in);
         if (!in || offset < begin || offset >= size) return false;
         first = std::min(first, offset), last = std::max(last, offset);
     }
-    // A tile: column, row, two levels, the count of its bytes, the bytes.
-    in.seekg(static_cast<std::streamoff>(last + 4 * sizeof(std::int32_t)));
+    // A tile: column, row, two levels, the count of its bytes, the bytes. Lines: the first one's
+    // number, the count of their bytes, the bytes.
+    const std::uint64_t place = (version & kTiled) != 0 ? 4 : 1;
+    in.seekg(static_cast<std::streamoff>(last + place * sizeof(std::int32_t)));
     const auto bytes = number<std::int32_t>(in);
-    return in && last + 5 * sizeof(std::int32_t) + static_cast<std::uint64_t>(bytes) == size;
+    return in && bytes >= 0 &&
+           last + (place + 1) * sizeof(std::int32_t) + static_cast<std::uint64_t>(bytes) <= size;
 }
 
 }  // namespace tesserae::render

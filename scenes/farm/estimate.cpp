@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "render/picture_needs.hpp"
+#include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -62,19 +63,6 @@ FarmEstimate estimate_farm(const Scene& scene, std::size_t frames, const FarmReq
     e.memory_mib = static_cast<std::uint64_t>(
         std::ceil(kMemoryMargin * static_cast<double>(plan.memory_bytes) / (1 << 20)));
     return e;
-}
-
-std::string frames_text(const std::vector<int>& frames) {
-    std::string text;
-    for (std::size_t i = 0; i < frames.size();) {
-        std::size_t last = i;
-        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
-        if (!text.empty()) text += ',';
-        text += fmt::format("{}", frames[i]);
-        if (last > i) text += fmt::format("-{}", frames[last]);
-        i = last + 1;
-    }
-    return text;
 }
 
 std::vector<std::string> divide_frames(const std::vector<int>& frames, int chunk) {

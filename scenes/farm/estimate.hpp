@@ -29,7 +29,4 @@ FarmEstimate estimate_farm(const Scene& scene, std::size_t frames, const FarmReq
 /// The frames of each task, in the form of --frames: "0-4", "5-9", ...
 std::vector<std::string> divide_frames(const std::vector<int>& frames, int chunk);
 
-/// A list of frames in the form of --frames: "3,7-9". Ascending, without repeats.
-std::string frames_text(const std::vector<int>& frames);
-
 }  // namespace tesserae::scenes

@@ -9,9 +9,6 @@
 
 #include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
-#include "render/file/image_info.hpp"
-#include "render/file/whole_image.hpp"
-#include "render/picture_version.hpp"
 #include "scenes/farm/estimate.hpp"
 #include "scenes/farm/scripts.hpp"
 #include "scenes/farm/submit.hpp"
@@ -42,14 +39,6 @@ fs::path scene_file_of(const fs::path& folder) {
         folder.string()));
 }
 
-/// All frames, or those that were submitted.
-std::vector<int> wanted_frames(const Scene& scene, const fs::path& folder) {
-    std::ifstream in(folder / "submit" / "tasks.txt");
-    std::string text;
-    for (std::string line; std::getline(in, line);) text += (text.empty() ? "" : ",") + line;
-    return parse_frames(text, frame_count(scene));
-}
-
 /// By which version bodies were moved, as frames say it.
 int motion_version_of(const fs::path& folder, bool moves) {
     const fs::path trajectory = folder / "trajectory.h5";
@@ -59,24 +48,6 @@ int motion_version_of(const fs::path& folder, bool moves) {
     } catch (const InputError&) {
         return kMotionVersion;
     }
-}
-
-enum class FrameState { kComplete, kMissing, kOther, kInvalid };
-
-/// @param motion_version   of the trajectory
-FrameState state_of(const Scene& scene, int frame, int motion_version, const fs::path& exr,
-                    const fs::path& preview) {
-    if (!fs::exists(exr)) return FrameState::kMissing;
-    try {
-        const render::ImageInfo there = render::read_image_info(exr);
-        if (there.picture_version != render::kPictureVersion ||
-            there.motion_version != motion_version || !is_frame_of(scene, there, frame))
-            return FrameState::kOther;
-        if (!render::is_whole_image(exr)) return FrameState::kInvalid;
-    } catch (const InputError&) {
-        return FrameState::kInvalid;
-    }
-    return fs::exists(preview) ? FrameState::kComplete : FrameState::kMissing;
 }
 
 /// How many tasks of the submitted jobs run and wait.
@@ -137,8 +108,8 @@ std::string finishing_command(const FilmStatus& status, const fs::path& folder,
     text += fmt::format("tesserae render {}", word(scene_file));
     if (moves) text += fmt::format(" --trajectory {}", word(trajectory));
     text += fmt::format(" --frames {} -o {}", frames_text(frames), word(folder));
-    // What is in the way is replaced, only these frames.
-    if (!status.other.empty() || !status.invalid.empty()) text += " --overwrite";
+    // Of another scene is replaced what is in the way, only these frames.
+    if (!status.other.empty()) text += " --overwrite";
     return text;
 }
 
@@ -156,19 +127,22 @@ FilmStatus film_status(const fs::path& folder) {
         ++status.frames;
         const std::string stem = fmt::format("{}.{:04}", scene.name, frame);
         const fs::path exr = folder / "frames" / (stem + ".exr");
-        switch (state_of(scene, frame, motion_version, exr, folder / "preview" / (stem + ".png"))) {
+        const render::FrameFiles files = {exr, folder / "preview" / (stem + ".png")};
+        switch (check_frame(scene, frame, motion_version, files).state) {
             case FrameState::kComplete: {
                 std::error_code gone;
                 times.push_back(fs::last_write_time(exr, gone));
                 break;
             }
             case FrameState::kMissing:
+            case FrameState::kLacksPreview:
                 status.missing.push_back(frame);
                 break;
             case FrameState::kOther:
+            case FrameState::kOfOtherVersion:
                 status.other.push_back(frame);
                 break;
-            case FrameState::kInvalid:
+            case FrameState::kDamaged:
                 status.invalid.push_back(frame);
                 break;
         }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "core/error.hpp"
@@ -10,6 +11,7 @@
 #include "scenes/farm/scripts.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/film/mattes.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/process/shell_word.hpp"
 
 namespace tesserae::scenes {
@@ -32,10 +34,27 @@ void prepare_folder(const Scene& scene, const fs::path& folder) {
     if (scene.render.channels.cryptomatte) mattes_of(scene, folder / "frames");
 }
 
+/// Options go into lines of the scripts, where the end of a line would begin a command.
+void require_one_line(const char* option, const std::string& value) {
+    const auto ends_line = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    if (std::any_of(value.begin(), value.end(), ends_line))
+        throw InputError(fmt::format("{} {}: holds a control character: expected one line of text",
+                                     option, toml_text(value)));
+}
+
+void require_plain(const FarmRequest& request, const fs::path& folder) {
+    require_one_line("--partition", request.partition);
+    require_one_line("--account", request.account);
+    for (const std::string& option : request.sbatch) require_one_line("--sbatch", option);
+    // Commands are printed a line each.
+    require_one_line("-o", folder.string());
+}
+
 }  // namespace
 
 FarmReport write_farm(const Scene& scene, const std::vector<int>& frames, const fs::path& folder,
                       const FarmRequest& request, bool overwrite) {
+    require_plain(request, folder);
     if (scene.render.crop)
         throw InputError(
             "--crop: a crop is no film; tesserae render --crop makes it, or use --size");

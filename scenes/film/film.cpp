@@ -13,6 +13,7 @@
 #include "scenes/film/coast.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
@@ -197,6 +198,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         report.preview = files.preview;
         if (is_done(scene, info, files, replace)) {
             progress.start_at(++report.kept);
+            if (parts > 1) remove_parts(files.exr, parts);
             continue;
         }
         Exposure exposure(scene, poses, info.frame);
@@ -205,13 +207,12 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         const auto warn = [&](const render::FrameStats& stats) {
             for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
                                             clamped_pixels_text(stats, scene, info.frame)})
-                if (!text.empty()) fmt::print(stderr, "tesserae: {}\n", text);
+                if (!text.empty()) tell(text);
             report.stats += stats;
         };
         if (part) {
-            const auto stats =
-                render::render_part(picture, info, *part, part_file(files.exr, *part),
-                                    replace != Replace::kNothing, stop_requested());
+            const auto stats = render_one_part(picture, info, *part, files.exr,
+                                               replace != Replace::kNothing, stop_requested());
             if (stats) warn(*stats), ++report.parts;
             progress.update(i + 1);
             continue;

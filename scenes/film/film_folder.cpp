@@ -4,9 +4,11 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "render/file/preview_file.hpp"
 #include "render/file/whole_image.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/versions.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
@@ -82,23 +84,77 @@ bool is_frame_of(const Scene& scene, const render::ImageInfo& there, int frame) 
            there.scene_hash == frame_hash(scene.effective, picture, motion);
 }
 
+std::vector<int> wanted_frames(const Scene& scene, const fs::path& folder) {
+    std::string text;
+    for (const fs::path& file : {folder / "submit" / "tasks.txt", folder / kFramesFile}) {
+        std::ifstream in(file);
+        for (std::string line; std::getline(in, line);) text += (text.empty() ? "" : ",") + line;
+        if (!text.empty()) break;
+    }
+    return parse_frames(text, frame_count(scene));
+}
+
+FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
+                       const render::FrameFiles& files) {
+    if (!fs::exists(files.exr)) return {};
+    const std::string file = files.exr.string();
+    render::FrameInfo here;
+    here.frame = frame;
+    here.motion_version = motion_version;
+    here.scene_hash = hash_of_frame(scene, frame, here.picture_version, motion_version);
+    try {
+        const render::ImageInfo there = render::read_image_info(files.exr);
+        const bool is_ours =
+            there.picture_version == here.picture_version && there.motion_version == motion_version;
+        if (!is_ours || !is_frame_of(scene, there, frame))
+            return {is_ours ? FrameState::kOther : FrameState::kOfOtherVersion,
+                    fmt::format("{}: {}", file, other_frame(scene, there, here))};
+        if (!render::is_whole_image(files.exr))
+            return {FrameState::kDamaged, fmt::format("{}: is cut off", file)};
+    } catch (const InputError& error) {
+        return {FrameState::kDamaged, error.what()};
+    }
+    if (!fs::exists(files.preview))
+        return {FrameState::kLacksPreview, fmt::format("{}: is missing", files.preview.string())};
+    const std::string damage = render::damage_of_png(files.preview);
+    if (!damage.empty()) return {FrameState::kLacksPreview, damage};
+    return {FrameState::kComplete, {}};
+}
+
 bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
              Replace replace) {
-    if (!fs::exists(files.exr)) return false;
-    render::ImageInfo there;
-    try {
-        there = render::read_image_info(files.exr);
-    } catch (const InputError&) {
-        if (replace != Replace::kAll) throw;
+    const FrameCheck there = check_frame(scene, info.frame, info.motion_version, files);
+    switch (there.state) {
+        case FrameState::kMissing:
+            return false;
+        case FrameState::kComplete:
+            return true;
+        case FrameState::kLacksPreview:
+            if (mend_preview(scene, files, there.reason)) return true;
+            break;
+        case FrameState::kOther:
+            if (replace != Replace::kNothing) return false;
+            throw InputError(there.reason + "; choose another folder, or --overwrite");
+        case FrameState::kOfOtherVersion:
+            if (replace == Replace::kAll) return false;
+            throw InputError(there.reason + "; choose another folder, or --overwrite");
+        case FrameState::kDamaged:
+            break;
     }
-    const bool is_ours = there.picture_version == info.picture_version &&
-                         there.motion_version == info.motion_version;
-    if (is_ours && is_frame_of(scene, there, info.frame))
-        return fs::exists(files.preview) && render::is_whole_image(files.exr);
-    if (replace == Replace::kAll) return false;
-    if (replace == Replace::kOtherLooks && is_ours) return false;
-    throw InputError(fmt::format("{}: {}; choose another folder, or --overwrite",
-                                 files.exr.string(), other_frame(scene, there, info)));
+    tell(there.reason + ": the frame is rendered again");
+    return false;
+}
+
+bool mend_preview(const Scene& scene, const render::FrameFiles& files, const std::string& reason) {
+    try {
+        if (!render::remake_preview(files.exr, scene.render.exposure, files.preview)) return false;
+    } catch (const InputError& error) {
+        // The image's pixels are damaged too, which its header does not show.
+        tell(error.what());
+        return false;
+    }
+    tell(reason + ": made again from its image");
+    return true;
 }
 
 }  // namespace tesserae::scenes

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
@@ -12,6 +13,8 @@
 namespace tesserae::scenes {
 
 constexpr const char* kSceneFile = "scene.toml";
+/// Which frames a draft has, as `--frames` takes them. Other folders have all.
+constexpr const char* kFramesFile = "frames.txt";
 
 /// What may be replaced in a folder.
 enum class Replace {
@@ -37,7 +40,38 @@ std::string hash_of_frame(const Scene& scene, int frame, int picture_version, in
 /// A file's frame shows this scene, in whatever versions.
 bool is_frame_of(const Scene& scene, const render::ImageInfo& there, int frame);
 
-/// The whole frame and its preview are there already.
+/// The frames that a folder shall have in the end: those that were submitted, those of a draft, or
+/// all.
+/// @throws InputError   the file that says so is damaged
+std::vector<int> wanted_frames(const Scene& scene, const std::filesystem::path& folder);
+
+enum class FrameState {
+    kMissing,
+    kComplete,
+    kLacksPreview,    ///< the image is whole, its preview is missing or damaged
+    kOther,           ///< of another scene or look
+    kOfOtherVersion,  ///< of this scene or another, by another version of motion or picture
+    kDamaged,         ///< the image cannot be read or is cut off
+};
+
+/// How a frame's files are, and why.
+struct FrameCheck {
+    FrameState state = FrameState::kMissing;
+    std::string reason;  ///< with the file's path; empty where it is missing or complete
+};
+
+/// Looks at the files of a frame: reads the image's header and table, and the whole preview.
+/// @param motion_version   of the trajectory that moves its bodies
+FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
+                       const render::FrameFiles& files);
+
+/// Makes a preview that is missing or damaged from its image, and tells it on standard error.
+/// @return false: the image holds no colour, or is damaged as well
+/// @throws RunError   the preview cannot be written
+bool mend_preview(const Scene& scene, const render::FrameFiles& files, const std::string& reason);
+
+/// Whether a frame is there already. What is damaged is made again, and that is told on standard
+/// error; a preview is made from its image where that is possible.
 /// @throws InputError   a frame of something else is there, and may not be replaced
 bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
              Replace replace);

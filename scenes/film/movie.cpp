@@ -14,16 +14,21 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
 #include "core/file/partial_file.hpp"
 #include "render/file/image_info.hpp"
+#include "render/file/preview_file.hpp"
 #include "scenes/film/film_folder.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/hash.hpp"
+#include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
+#include "scenes/timeline.hpp"
 
 extern char** environ;
 
@@ -36,9 +41,13 @@ fs::path preview_file(const Scene& scene, const fs::path& folder, int frame) {
     return folder / "preview" / fmt::format("{}.{:04}.png", scene.name, frame);
 }
 
-/// The number in NAME.0042.png; none of another file.
-std::optional<int> preview_number(const std::string& file, const std::string& name) {
-    const std::string_view end = ".png";
+fs::path image_file(const Scene& scene, const fs::path& folder, int frame) {
+    return folder / "frames" / fmt::format("{}.{:04}.exr", scene.name, frame);
+}
+
+/// The number in NAME.0042.png or whatever the file's end; none of another file.
+std::optional<int> frame_number(const std::string& file, const std::string& name,
+                                std::string_view end) {
     if (!file.starts_with(name + ".") || !file.ends_with(end)) return std::nullopt;
     const char* const first = file.data() + name.size() + 1;
     const char* const last = file.data() + file.size() - end.size();
@@ -91,14 +100,91 @@ std::string read_file(const fs::path& file) {
 }
 
 /// A frame that is there besides its preview is one of the scene.
-void require_frame_of(const Scene& scene, const fs::path& folder, int frame) {
-    const fs::path file = folder / "frames" / fmt::format("{}.{:04}.exr", scene.name, frame);
+void require_frame_of(const Scene& scene, const fs::path& file, int frame) {
     if (!fs::exists(file)) return;
     const render::ImageInfo there = render::read_image_info(file);
     if (!is_frame_of(scene, there, frame))
         throw InputError(
             fmt::format("{}: is a frame of another scene than {} of this folder; render it again",
                         file.string(), kSceneFile));
+}
+
+/// The numbers of the files in a folder, ascending.
+std::vector<int> numbers_in(const fs::path& folder, const std::string& name, std::string_view end) {
+    std::vector<int> numbers;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+        if (const auto number = frame_number(entry.path().filename().string(), name, end))
+            numbers.push_back(*number);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+}
+
+/// Makes previews that are missing or damaged from their images.
+void mend_previews(const Scene& scene, const fs::path& folder) {
+    std::vector<int> numbers;
+    std::ranges::set_union(numbers_in(folder / "frames", scene.name, ".exr"),
+                           preview_numbers(scene, folder), std::back_inserter(numbers));
+    for (const int number : numbers) {
+        const render::FrameFiles files = {image_file(scene, folder, number),
+                                          preview_file(scene, folder, number)};
+        const std::string damage = fs::exists(files.preview)
+                                       ? render::damage_of_png(files.preview)
+                                       : fmt::format("{}: is missing", files.preview.string());
+        if (damage.empty()) continue;
+        require_frame_of(scene, files.exr, number);
+        if (!fs::exists(files.exr) || !mend_preview(scene, files, damage))
+            throw InputError(damage +
+                             "; the same command that made the others makes that frame again");
+    }
+}
+
+/// Says which frames that the folder shall have are not in the film.
+void tell_missing(const Scene& scene, const fs::path& folder, const std::vector<int>& numbers) {
+    const std::vector<int> wanted = wanted_frames(scene, folder);
+    std::vector<int> missing;
+    std::ranges::set_difference(wanted, numbers, std::back_inserter(missing));
+    if (missing.empty()) return;
+    tell(fmt::format("{}: {} of {} frames are missing in the film: {}", folder.string(),
+                     missing.size(), wanted.size(), frames_text(missing)));
+}
+
+/// A hash of the previews that a film shows, with their numbers: another as soon as one is another,
+/// whatever the clock says.
+class Signature {
+  public:
+    void add(int number, const std::string& png) {
+        const std::string head = fmt::format("{} {}\n", number, png.size());
+        hash_.add(head.data(), head.size());
+        hash_.add(png.data(), png.size());
+    }
+    std::string text() const { return hash_.hex(); }
+
+  private:
+    StreamHash hash_;
+};
+
+/// A film ends with a box of free space (ISO/IEC 14496-12, 8.1.2), which players skip: its length,
+/// its type, these words and the signature of the previews that the film shows.
+std::string signature_box(const std::string& signature) {
+    const std::string content =
+        "free"
+        "tesserae previews " +
+        signature;
+    std::string box = {'\0', '\0', '\0', static_cast<char>(content.size() + 4)};
+    return box + content;
+}
+
+void append(const PartialFile& file, std::string_view bytes) {
+    off_t end = ::lseek(file.descriptor(), 0, SEEK_END);
+    while (end >= 0 && !bytes.empty()) {
+        const ssize_t written = ::pwrite(file.descriptor(), bytes.data(), bytes.size(), end);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) break;
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+        end += written;
+    }
+    if (!bytes.empty()) throw RunError(file.message("cannot be written", errno));
 }
 
 /// The child's descriptor of what it writes.
@@ -209,13 +295,7 @@ std::vector<std::string> ffmpeg_words(double frames_per_second) {
 }  // namespace
 
 std::vector<int> preview_numbers(const Scene& scene, const fs::path& folder) {
-    std::vector<int> numbers;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder / "preview", error))
-        if (const auto number = preview_number(entry.path().filename().string(), scene.name))
-            numbers.push_back(*number);
-    std::sort(numbers.begin(), numbers.end());
-    return numbers;
+    return numbers_in(folder / "preview", scene.name, ".png");
 }
 
 fs::path movie_file(const Scene& scene, const fs::path& folder) {
@@ -224,12 +304,15 @@ fs::path movie_file(const Scene& scene, const fs::path& folder) {
 
 bool is_movie_current(const Scene& scene, const fs::path& folder) {
     const fs::path movie = movie_file(scene, folder);
-    if (!fs::exists(movie)) return false;
-    const auto made = fs::last_write_time(movie);
-    const std::vector<int> numbers = preview_numbers(scene, folder);
-    return std::none_of(numbers.begin(), numbers.end(), [&](int number) {
-        return fs::last_write_time(preview_file(scene, folder, number)) > made;
-    });
+    Signature signature;
+    for (const int number : preview_numbers(scene, folder))
+        signature.add(number, read_file(preview_file(scene, folder, number)));
+    const std::string box = signature_box(signature.text());
+    std::ifstream in(movie, std::ios::binary);
+    std::string end(box.size(), '\0');
+    in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+    in.read(end.data(), static_cast<std::streamsize>(end.size()));
+    return in && end == box;
 }
 
 bool has_ffmpeg() {
@@ -242,12 +325,15 @@ bool has_ffmpeg() {
 
 MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
     const auto begin = std::chrono::steady_clock::now();
+    mend_previews(scene, folder);
     const std::vector<int> numbers = preview_numbers(scene, folder);
     MovieReport report;
     report.file = movie_file(scene, folder);
     report.frames = numbers.size();
     report.frames_per_second = scene.render.frames_per_second / stride_of(numbers, folder);
-    for (const int number : numbers) require_frame_of(scene, folder, number);
+    for (const int number : numbers)
+        require_frame_of(scene, image_file(scene, folder, number), number);
+    tell_missing(scene, folder, numbers);
     if (!has_ffmpeg())
         throw RunError(
             fmt::format("{}: needs ffmpeg, which is not installed (Debian's package ffmpeg)",
@@ -260,6 +346,7 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
     Child ffmpeg(ffmpeg_words(report.frames_per_second), output.partial());
     Progress progress("filming", "frames", numbers.size(), quiet);
     std::optional<Size> size;
+    Signature signature;
     bool reads = true;
     try {
         for (std::size_t i = 0; i < numbers.size() && reads; ++i) {
@@ -272,6 +359,7 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
                 throw InputError(fmt::format("{}: has {}x{} pixels, the first preview {}x{}",
                                              file.string(), here[0], here[1], (*size)[0],
                                              (*size)[1]));
+            signature.add(numbers[i], png);
             reads = ffmpeg.send(png);
             progress.update(i + 1);
         }
@@ -280,6 +368,7 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
         if (!succeeded || !reads)
             throw RunError(
                 fmt::format("{}: ffmpeg failed; it says why above", report.file.string()));
+        append(output, signature_box(signature.text()));
     } catch (...) {
         output.remove();
         throw;

@@ -21,18 +21,19 @@ std::vector<int> preview_numbers(const Scene& scene, const std::filesystem::path
 /// Where a folder's film is.
 std::filesystem::path movie_file(const Scene& scene, const std::filesystem::path& folder);
 
-/// It is there, and newer than all previews.
+/// Whether the film is there and shows the previews as they are now.
 bool is_movie_current(const Scene& scene, const std::filesystem::path& folder);
 
 /// ffmpeg is installed.
 bool has_ffmpeg();
 
 /// Makes the film of all previews, which may be every second frame or every tenth: it lasts as long
-/// as the scene does. H.264 in 4:2:0 with the index in front, which all players take; odd sizes are
-/// padded by a row or column of black.
+/// as the scene does. Frames that the folder lacks are told on standard error. A preview that is
+/// missing or damaged is made again from its image. H.264 in 4:2:0 with the index in front, which
+/// all players take; odd sizes are padded by a row or column of black.
 /// @param scene   that of the folder
-/// @throws InputError   fewer than two previews, one missing between others, of another size, or of
-///                      another scene
+/// @throws InputError   fewer than two previews, one missing between others, damaged beside no
+///                      image, of another size, or of another scene
 /// @throws RunError     ffmpeg is missing or fails, or the file cannot be written
 /// @throws Stopped      after a signal
 MovieReport make_movie(const Scene& scene, const std::filesystem::path& folder, bool quiet);

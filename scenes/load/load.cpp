@@ -6,6 +6,7 @@
 #include "scenes/load/hash.hpp"
 #include "scenes/load/load_parts.hpp"
 #include "scenes/load/versions.hpp"
+#include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
 
@@ -67,6 +68,8 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     load_lights(root, origin, scene, out);
     load_render(root, origin, scene, out);
     require_view(scene, origin);
+    // Both refuse what no command could do.
+    step_count(scene), frame_count(scene);
 
     find_unused_keys(root, origin, scene);
     scene.hash = hex_hash(out.text());

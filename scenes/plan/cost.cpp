@@ -1,7 +1,6 @@
 #include "scenes/plan/cost.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +15,7 @@
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/plan/rehearsal.hpp"
+#include "scenes/process/scratch_folder.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
 
@@ -30,25 +30,6 @@ constexpr std::size_t kMostFrames = 8;
 constexpr double kFileSeconds = 0.03;
 /// The part of the time that simulating may take.
 constexpr double kSimulating = 0.4;
-
-/// A folder of this process alone, gone in the end.
-class TemporaryFolder {
-  public:
-    TemporaryFolder()
-        : path_(fs::temp_directory_path() / fmt::format("tesserae-plan-{}", getpid())) {
-        fs::create_directories(path_);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 /// Of a trajectory, or of what was rehearsed.
 std::vector<TimedBodies> poses_of(const Scene& scene, const fs::path& trajectory,
@@ -108,7 +89,7 @@ bool all_look_alike(const Scene& scene, const Plan& plan) {
 void measure_rendering(const Scene& scene, const Plan& plan, const std::vector<TimedBodies>& poses,
                        const std::vector<int>& frames, double seconds, Cost& cost) {
     using Clock = std::chrono::steady_clock;
-    const TemporaryFolder folder;
+    const ScratchFolder folder("tesserae-plan-");
     const auto begin = Clock::now();
     // The middle first, then those between: what the time allows.
     std::map<double, render::FrameCost> seen;
@@ -139,6 +120,11 @@ void measure_rendering(const Scene& scene, const Plan& plan, const std::vector<T
 }
 
 }  // namespace
+
+double measuring_seconds(const Scene& scene) {
+    constexpr double kLeast = 0.35, kMost = 4, kOfBody = 4e-4;
+    return std::min(kMost, kLeast + kOfBody * static_cast<double>(scene.bodies.size()));
+}
 
 Cost measure_cost(const Scene& scene, const Plan& plan, const fs::path& trajectory,
                   const std::vector<int>& frames, double seconds) {

@@ -16,7 +16,14 @@ struct Cost {
     std::uint64_t frame_bytes = 0;      ///< images and previews
     std::vector<std::string> measured;  ///< what was done of it, a line each
     std::vector<std::string> guessed;   ///< what could not be seen
+
+    /// Whether the times may be wrong by more than a factor of two.
+    bool is_rough() const { return !guessed.empty(); }
 };
+
+/// How long a plan measures [s]: half a second in all for a few bodies, four for many, whose first
+/// steps tell little.
+double measuring_seconds(const Scene& scene);
 
 /// Simulates and renders for about `seconds` in memory and in a temporary folder. Runs on the
 /// threads of the caller's parallel::Threads.

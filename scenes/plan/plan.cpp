@@ -160,6 +160,12 @@ std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads
     return bytes;
 }
 
+std::string memory_text(std::uint64_t bytes) {
+    const double megabytes = 1e-6 * static_cast<double>(bytes);
+    return megabytes < 1000 ? fmt::format("{:.1f} MB", megabytes)
+                            : fmt::format("{:.3f} GB", 1e-3 * megabytes);
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, int threads) {
@@ -200,11 +206,10 @@ void require_memory(const Plan& plan, const Scene& scene) {
     const std::uint64_t available = available_memory();
     if (plan.memory_bytes > available)
         throw InputError(
-            fmt::format("{}: needs about {:.1f} GB of memory for {} bodies, {:.1f} GB are free: "
-                        "use fewer bodies "
+            fmt::format("{}: needs about {} of memory for {} bodies, {} are free: use fewer bodies "
                         "or a larger machine",
-                        scene.file.string(), 1e-9 * static_cast<double>(plan.memory_bytes),
-                        plan.bodies, 1e-9 * static_cast<double>(available)));
+                        scene.file.string(), memory_text(plan.memory_bytes), plan.bodies,
+                        memory_text(available)));
 }
 
 }  // namespace tesserae::scenes

@@ -92,7 +92,8 @@ Rehearsal rehearse(const Scene& scene, const Plan& plan, double seconds) {
     std::uint64_t spacing = 1;
     const auto begin = Clock::now();
     parallel::ParallelWorld world(scene.bodies, *scene.physics);
-    while (rehearsal.taken < rehearsal.steps && since(begin) < seconds) {
+    // One step at least, however late it is: without any there is nothing to guess from.
+    while (rehearsal.taken < rehearsal.steps && (costs.empty() || since(begin) < seconds)) {
         if (stop_requested()) throw Stopped();
         const auto step_begin = Clock::now();
         const StepReport found = world.step(dt);

@@ -24,7 +24,8 @@ struct Rehearsal {
     bool is_whole() const { return taken == steps; }
 };
 
-/// Simulates for about `seconds`, on the threads of the caller's parallel::Threads.
+/// Simulates for about `seconds`, one step at least, on the threads of the caller's
+/// parallel::Threads.
 Rehearsal rehearse(const Scene& scene, const Plan& plan, double seconds);
 
 }  // namespace tesserae::scenes

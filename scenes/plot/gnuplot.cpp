@@ -91,7 +91,12 @@ std::string gnuplot_output(const std::string& script) {
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) gnuplot_failed("failed: " + said.content());
+    if (WIFSIGNALED(status))
+        gnuplot_failed(fmt::format("was ended by signal {} ({})", WTERMSIG(status),
+                                   ::strsignal(WTERMSIG(status))));
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        gnuplot_failed(
+            fmt::format("failed with exit status {}: {}", WEXITSTATUS(status), said.content()));
     return output.content();
 }
 

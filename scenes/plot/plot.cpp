@@ -168,6 +168,19 @@ std::string plot_script(const std::vector<PlotPanel>& panels, const std::string&
     return script + "unset multiplot\n";
 }
 
+namespace {
+
+/// What gnuplot draws. @throws RunError   with the picture's path and the reason
+std::string drawn(const std::string& script, const fs::path& picture) try {
+    std::string drawing = gnuplot_output(script);
+    if (drawing.empty()) throw RunError("gnuplot: drew nothing");
+    return drawing;
+} catch (const RunError& error) {
+    throw RunError(fmt::format("{}: cannot be made: {}", picture.string(), error.what()));
+}
+
+}  // namespace
+
 bool plot(const fs::path& trajectory, const fs::path& picture, bool overwrite) {
     const bool is_svg = picture.extension() == ".svg";
     if (!is_svg && picture.extension() != ".png")
@@ -184,8 +197,7 @@ bool plot(const fs::path& trajectory, const fs::path& picture, bool overwrite) {
         fmt::format("{}: {} bodies, steps {} to {}", reader.header().scene_name,
                     reader.header().bodies, facts.front().step, facts.back().step);
     const std::string drawing =
-        gnuplot_output(plot_script(observables_plot(facts), title, terminal));
-    if (drawing.empty()) throw RunError("gnuplot: drew nothing");
+        drawn(plot_script(observables_plot(facts), title, terminal), picture);
 
     if (fs::exists(picture)) {
         std::ifstream in(picture, std::ios::binary);

@@ -62,6 +62,8 @@ struct TrajectoryWriter::File {
     File(const fs::path& path, const TrajectoryHeader& h, std::vector<std::uint64_t> s)
         : lock(path), header(h), steps(std::move(s)) {}
 
+    void open(bool overwrite);
+    void remove_if_empty() noexcept;
     std::uint64_t finished_rows(bool overwrite) const;
     void copy_finished();
     bool continue_leftover(bool overwrite);
@@ -339,19 +341,35 @@ void TrajectoryWriter::File::forget() {
     rows = 0;
 }
 
+/// Continues what is there, or starts.
+void TrajectoryWriter::File::open(bool overwrite) {
+    const std::uint64_t finished = finished_rows(overwrite);
+    bool continued = continue_leftover(overwrite);
+    if (rows < finished) {
+        copy_finished();
+        continued = continue_leftover(overwrite);
+    }
+    if (!continued) writing([&] { start(); });
+    record.first = rows;
+    record.hash = {};
+    lock.admit_readers();
+}
+
+/// What is refused leaves no file that was not there before.
+void TrajectoryWriter::File::remove_if_empty() noexcept {
+    std::error_code error;
+    if (fs::file_size(lock.partial(), error) == 0 && !error) lock.remove();
+}
+
 TrajectoryWriter::TrajectoryWriter(const fs::path& path, const TrajectoryHeader& header,
                                    std::vector<std::uint64_t> steps, bool overwrite)
     : file_(std::make_unique<File>(path, header, std::move(steps))) {
-    const std::uint64_t finished = file_->finished_rows(overwrite);
-    bool continued = file_->continue_leftover(overwrite);
-    if (file_->rows < finished) {
-        file_->copy_finished();
-        continued = file_->continue_leftover(overwrite);
+    try {
+        file_->open(overwrite);
+    } catch (...) {
+        file_->remove_if_empty();
+        throw;
     }
-    if (!continued) file_->writing([&] { file_->start(); });
-    file_->record.first = file_->rows;
-    file_->record.hash = {};
-    file_->lock.admit_readers();
 }
 
 TrajectoryWriter::~TrajectoryWriter() {

@@ -101,5 +101,19 @@ TEST(Timeline, RefusesMoreFramesThanCanBeNumbered) {
     EXPECT_THROW(step_count(scene_of(1e300, 240, 30)), InputError);
 }
 
+TEST(FramesText, IsReadAsTheSameFrames) {
+    EXPECT_EQ(frames_text({}), "");
+    EXPECT_EQ(frames_text({3, 7, 8, 9}), "3,7-9");
+    EXPECT_EQ(frames_text({0, 2, 4, 6, 7, 8}), "0-6x2,7-8");
+    EXPECT_EQ(frames_text({1, 3}), "1,3") << "two that are apart are no range";
+    // All sets of ten frames.
+    for (unsigned set = 1; set < 1024; ++set) {
+        std::vector<int> frames;
+        for (int i = 0; i < 10; ++i)
+            if (set >> i & 1) frames.push_back(i);
+        EXPECT_EQ(parse_frames(frames_text(frames), 10), frames) << frames_text(frames);
+    }
+}
+
 }  // namespace
 }  // namespace tesserae::scenes

@@ -74,6 +74,38 @@ TEST(Rehearsal, GuessesWhatItHadNoTimeFor) {
     EXPECT_NEAR(rehearsal.contacts, 2.3 * 24, 1e-9) << "24 balls come to rest";
 }
 
+/// A clock that has run ahead, or a machine so slow that the time is over at once.
+TEST(Rehearsal, TakesOneStepAtLeast) {
+    const Scene scene = load_text(falling(600'000), {});
+    for (const double seconds : {0.0, -1e9}) {
+        Rehearsal rehearsal;
+        Cost cost;
+        parallel::Threads(1).run([&] {
+            rehearsal = rehearse(scene, make_plan(scene, 1), seconds);
+            cost = measure_cost(scene, make_plan(scene, 1), {}, {0, 1, 2}, seconds);
+        });
+        EXPECT_EQ(rehearsal.taken, 1u);
+        EXPECT_GT(rehearsal.seconds, 0);
+        EXPECT_GT(cost.render_seconds, 0);
+        EXPECT_TRUE(cost.is_rough());
+    }
+}
+
+/// Samples beyond some tens are not taken: one tile of this frame would take minutes.
+TEST(Cost, OfVeryManySamplesIsToldAfterSome) {
+    const auto cost_of = [](const char* samples) {
+        const Scene scene = load_text(
+            "[render]\nintegrator = \"path\"\nsize = [64, 32]\nsamples = " + std::string(samples) +
+                "\n[[light]]\ntype = \"sky\"\n[[body]]\nshape = \"hypersphere\"\nradius = 1\n",
+            {});
+        Cost cost;
+        parallel::Threads(1).run(
+            [&] { cost = measure_cost(scene, make_plan(scene, 1), {}, {0}, 0); });
+        return cost.render_seconds;
+    };
+    EXPECT_GT(cost_of("1048576"), 100 * cost_of("16"));
+}
+
 TEST(Cost, IsThatOfTheFilm) {
     const Scene scene = load_text(falling(60), {});
     const Plan plan = make_plan(scene, 2);

@@ -68,7 +68,7 @@ TEST(Farm, ScriptsAreThoseOfTheSceneAndTheOptions) {
     EXPECT_EQ(texts[0], texts[1]) << "no paths, dates or names of machines";
     for (const char* line :
          {"#SBATCH --partition='big mem'", "#SBATCH --account=me", "--cpus-per-task=3",
-          "#SBATCH --qos=low", "#SBATCH --nice", "--array=0-0%7", "0,2,4,6,8"})
+          "#SBATCH --qos=low", "#SBATCH --nice", "--array=0-0%7", "0-8x2"})
         EXPECT_NE(texts[0].find(line), std::string::npos) << line;
 }
 

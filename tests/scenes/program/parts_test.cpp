@@ -87,15 +87,23 @@ TEST(Parts, ThatAreThereAreKeptAndThoseThatLackAreNamed) {
     // Parts are invisible to status and hash.
     EXPECT_EQ(tesserae({"status", out}).status, 1);
 
-    // A damaged part is an error that names it; --overwrite mends it.
+    // A damaged part is an error that names it; rendering it again mends it.
     ASSERT_EQ(tesserae(part_words(scene, out, 2, 3, {})).status, 0);
-    fs::resize_file(first, fs::file_size(first) - 3);
-    const Outcome damaged = tesserae({"join", out});
-    EXPECT_EQ(damaged.status, 2);
-    EXPECT_NE(damaged.err.find("1of3.tiles"), std::string::npos) << damaged.err;
-    EXPECT_FALSE(fs::exists(out + "/frames/still.0000.exr"));
-    fs::remove(first);
-    ASSERT_EQ(tesserae(part_words(scene, out, 1, 3, {})).status, 0);
+    const std::string bytes = content(first);
+    std::vector<std::string> damaged = {"", "no part", bytes.substr(0, bytes.size() - 3)};
+    for (const std::size_t at : {std::size_t{5}, bytes.size() / 2, bytes.size() - 2}) {
+        damaged.push_back(bytes);
+        damaged.back()[at] ^= 0x10;
+    }
+    for (const std::string& other : damaged) {
+        std::ofstream(first, std::ios::binary) << other;
+        const Outcome join = tesserae({"join", out});
+        EXPECT_EQ(join.status, 2);
+        EXPECT_NE(join.err.find("1of3.tiles"), std::string::npos) << join.err;
+        EXPECT_FALSE(fs::exists(out + "/frames/still.0000.exr"));
+        ASSERT_EQ(tesserae(part_words(scene, out, 1, 3, {})).status, 0);
+        EXPECT_EQ(content(first), bytes);
+    }
     EXPECT_EQ(tesserae({"join", out}).status, 0);
     EXPECT_EQ(tesserae({"status", out}).status, 0);
     // Once the frame is there, its parts are not made again.
@@ -116,18 +124,69 @@ TEST(Parts, AreTheJournalOfALargeFrame) {
     ASSERT_EQ(tesserae({"join", whole}).status, 0);
 
     for (const int k : {1, 7}) ASSERT_EQ(tesserae(part_words(scene, out, k, 22, large)).status, 0);
-    // A part of another frame in the place of one shows that they are looked at.
+    // A damaged part is made again; one of another frame in its place is not replaced.
     std::vector<std::string> words = {"render", scene, "-o", out};
     words.insert(words.end(), large.begin(), large.end());
     const std::string seventh = out + "/frames/still.0000.7of22.tiles";
     const std::string bytes = content(seventh);
-    std::ofstream(seventh) << "no part";
+    const auto other = folder.file("other");
+    std::vector<std::string> otherwise = large;
+    otherwise.insert(otherwise.end(), {"--set", "camera.field_of_view=20"});
+    ASSERT_EQ(tesserae(part_words(scene, other, 7, 22, otherwise)).status, 0);
+    fs::copy_file(other + "/frames/still.0000.7of22.tiles", seventh,
+                  fs::copy_options::overwrite_existing);
     EXPECT_EQ(tesserae(words).status, 2);
     EXPECT_TRUE(fs::exists(out + "/frames/still.0000.6of22.tiles")) << "kept for the next run";
-    std::ofstream(seventh, std::ios::binary) << bytes;
+    std::ofstream(seventh, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
     const Outcome render = tesserae(words);
     ASSERT_EQ(render.status, 0) << render.err;
     expect_same_frame(whole, out);
+}
+
+/// A kill amid removing the parts of a frame that is whole leaves some of them.
+TEST(Parts, OfAWholeFrameAreRemoved) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    const auto out = folder.file("out"), kept = folder.file("kept");
+    for (const int k : {1, 2, 3}) ASSERT_EQ(tesserae(part_words(scene, out, k, 3, {})).status, 0);
+    fs::copy(out + "/frames", kept);
+    ASSERT_EQ(tesserae({"join", out}).status, 0);
+    const std::string image = content(out + "/frames/still.0000.exr");
+    const auto leave = [&](const std::string& part) {
+        fs::copy_file(kept + "/" + part, out + "/frames/" + part);
+    };
+    leave("still.0000.2of3.tiles"), leave("still.0000.3of3.tiles");
+    const Outcome again = tesserae({"join", out});
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_FALSE(fs::exists(out + "/frames/still.0000.2of3.tiles"));
+    EXPECT_FALSE(fs::exists(out + "/frames/still.0000.3of3.tiles"));
+    EXPECT_EQ(content(out + "/frames/still.0000.exr"), image);
+    // Parts of a frame that looks otherwise are named and stay.
+    ASSERT_EQ(
+        tesserae({"render", scene, "-o", out, "--overwrite", "--set", "camera.field_of_view=20"})
+            .status,
+        0);
+    leave("still.0000.2of3.tiles");
+    const Outcome other = tesserae({"join", out});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("2of3.tiles"), std::string::npos) << other.err;
+    EXPECT_TRUE(fs::exists(out + "/frames/still.0000.2of3.tiles"));
+}
+
+TEST(Parts, NamesThatAreNoneAreTold) {
+    const Folder folder("parts");
+    const auto scene = folder.write("still.toml", still_scene());
+    const auto out = folder.file("out");
+    ASSERT_EQ(tesserae(part_words(scene, out, 1, 1, {})).status, 0);
+    const std::vector<std::string> wrong = {"still.0000.1of0.tiles", "still.0000.0of2.tiles",
+                                            "still.0000.3of2.tiles", "still.0000.01of2.tiles",
+                                            "still.0000.1of999999.tiles"};
+    for (const std::string& name : wrong) folder.write("out/frames/" + name, "");
+    const Outcome join = tesserae({"join", out});
+    EXPECT_EQ(join.status, 2);
+    for (const std::string& name : wrong)
+        EXPECT_NE(join.err.find(name), std::string::npos) << join.err;
+    EXPECT_TRUE(fs::exists(out + "/frames/still.0000.exr")) << "the frame that is there is joined";
 }
 
 TEST(Parts, AWrongPartIsRefused) {

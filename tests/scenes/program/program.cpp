@@ -55,8 +55,8 @@ std::vector<std::string> files_below(const fs::path& folder) {
     std::vector<std::string> files;
     if (fs::exists(folder))
         for (const auto& entry : fs::recursive_directory_iterator(folder))
-            if (entry.is_regular_file())
-                files.push_back(fs::relative(entry.path(), folder).string());
+            if (!entry.is_symlink() && entry.is_regular_file())
+                files.push_back(entry.path().lexically_relative(folder).string());
     std::sort(files.begin(), files.end());
     return files;
 }

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+// Previews that lie beside their images.
+namespace tesserae::render {
+
+/// What is wrong with a PNG file, with its path: it cannot be read, it is cut off, or a chunk's
+/// checksum is not that of its bytes. Empty where it is whole.
+std::string damage_of_png(const std::filesystem::path& file);
+
+/// Makes the preview of an image from the image, with the bytes that rendering it gave.
+/// @param exposure   [stops]
+/// @return false: the image holds no colour
+/// @throws InputError   the image cannot be read; RunError: the preview cannot be written
+bool remake_preview(const std::filesystem::path& exr, double exposure,
+                    const std::filesystem::path& preview);
+
+}  // namespace tesserae::render
