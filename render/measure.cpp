@@ -129,8 +129,12 @@ FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seco
     std::vector<double> rendering(images.size()), packing(images.size());
     double spent = 0;
     while (cost.rendered < tiles.size() && (cost.rendered == 0 || spent < seconds)) {
-        // The first ones show how long a tile takes.
-        const std::size_t most = cost.rendered == 0 ? threads : images.size();
+        // The first ones show how many the time is enough for.
+        const double waves = cost.rendered == 0
+                                 ? 1
+                                 : (seconds - spent) / spent * static_cast<double>(cost.rendered) /
+                                       static_cast<double>(threads);
+        const auto most = threads * static_cast<std::size_t>(std::clamp(waves, 1.0, 8.0));
         const std::size_t count = std::min(most, tiles.size() - cost.rendered);
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             Watch own;

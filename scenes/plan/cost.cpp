@@ -122,7 +122,7 @@ void measure_rendering(const Scene& scene, const Plan& plan, const std::vector<T
 }  // namespace
 
 double measuring_seconds(const Scene& scene) {
-    constexpr double kLeast = 0.35, kMost = 4, kOfBody = 4e-4;
+    constexpr double kLeast = 0.3, kMost = 3, kOfBody = 4e-4;
     return std::min(kMost, kLeast + kOfBody * static_cast<double>(scene.bodies.size()));
 }
 

@@ -21,7 +21,7 @@ struct Cost {
     bool is_rough() const { return !guessed.empty(); }
 };
 
-/// How long a plan measures [s]: half a second in all for a few bodies, four for many, whose first
+/// How long a plan measures [s]: half a second in all for a few bodies, some for many, whose first
 /// steps tell little.
 double measuring_seconds(const Scene& scene);
 
