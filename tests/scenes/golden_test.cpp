@@ -66,7 +66,7 @@ TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> soft = {"physics.solver=\"soft\"", "physics.substeps=4",
                                            "physics.iterations=2", "physics.sleeping=true"};
     EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "66f9b63c2245a8d40db3d3f864dbcfbd");
-    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "fa8bd86dc406fca177a6aeb03e2d965e");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180, soft).hash, "d3ad00063414fe9156481999f348fb26");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "0c1b0bd771ce1fe6f27628e4b81a82be");
 }
 

@@ -28,7 +28,11 @@ Vec4 velocity_change(const Change& change) {
     return assembled(v[0], v[1], v[2], v[3]);
 }
 
-void put_angular(const Bivector& w, BodyChange& change) {
+/// Writes an angular velocity into a body's record, rounded to float. It is not inlined because
+/// g++ 12 would leave the rounding out: where it makes vectors of doubles that become floats and
+/// then doubles again, it takes the first doubles for the last ones. A body would then lose another
+/// change than the one that its record holds.
+[[gnu::noinline]] void put_angular(const Bivector& w, BodyChange& change) {
     const auto& [xy, xz, xw, yz, yw, zw] = w;
     change.first_planes = {static_cast<float>(xy), static_cast<float>(xz), static_cast<float>(xw),
                            static_cast<float>(yz)};

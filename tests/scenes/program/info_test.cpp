@@ -106,7 +106,7 @@ angular_velocity = { zw = 6 }
     const std::string text = tesserae({"info", file}).out;
     for (const char* line :
          {"\nmomentum change          20 kg m/s at step 240\n", "\nlast time                1 s\n",
-          "\nmotion version           35\n", "\nasleep, last row         0 bodies\n"})
+          "\nmotion version           36\n", "\nasleep, last row         0 bodies\n"})
         EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }
 
