@@ -9,15 +9,19 @@
 #include <cstdio>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 
 namespace tesserae {
 namespace {
 
+/// Bytes that are copied at once, usual 1 MiB: far fewer make more calls than the copying takes.
+constexpr std::size_t kCopiedAtOnce = 1 << 20;
+
 template <class Call>
-int retried(Call&& call) {
-    int result;
+auto retried(Call&& call) {
+    decltype(call()) result;
     do result = call();
     while (result < 0 && errno == EINTR);
     return result;
@@ -32,6 +36,24 @@ int sync_folder(const std::filesystem::path& parent) {
     ::close(folder);
     // Some network file systems cannot sync folders, which is no failure of ours.
     return error == EINVAL ? 0 : error;
+}
+
+/// Gives an open file the content of another. @return errno, 0 if done
+int copy_content(int from, int to) {
+    if (retried([&] { return ::ftruncate(to, 0); }) != 0) return errno;
+    std::vector<char> buffer(kCopiedAtOnce);
+    for (off_t done = 0;;) {
+        const ssize_t there =
+            retried([&] { return ::pread(from, buffer.data(), buffer.size(), done); });
+        if (there < 0) return errno;
+        if (there == 0) return 0;
+        // A write may end early: then the rest is read again.
+        const ssize_t written = retried(
+            [&] { return ::pwrite(to, buffer.data(), static_cast<std::size_t>(there), done); });
+        if (written < 0) return errno;
+        if (written == 0) return EIO;
+        done += written;
+    }
 }
 
 }  // namespace
@@ -74,6 +96,16 @@ void PartialFile::admit_readers() {
     // The change is not atomic: if another writer locks it in between, this one gives way.
     if (retried([&] { return ::flock(descriptor_, LOCK_SH | LOCK_NB); }) != 0)
         fail("cannot be locked", errno);
+}
+
+void PartialFile::copy_from(const std::filesystem::path& other) {
+    const int source = retried([&] { return ::open(other.c_str(), O_RDONLY | O_CLOEXEC); });
+    const int error = source < 0 ? errno : copy_content(source, descriptor_);
+    if (source >= 0) ::close(source);
+    if (error == 0) return;
+    remove();
+    throw RunError(fmt::format("{}: cannot be copied to {}: {}", other.string(), partial_.string(),
+                               std::generic_category().message(error)));
 }
 
 void PartialFile::publish() {

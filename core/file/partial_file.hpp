@@ -23,6 +23,8 @@ class PartialFile {
 
     /// Lets others lock it for reading, as HDF5's readers do; still keeps other writers out.
     void admit_readers();
+    /// Makes it a copy of another file. A failure removes it: half of a copy is of no use.
+    void copy_from(const std::filesystem::path& other);
     /// Syncs the content, renames it to PATH while still locked, syncs the folder, and closes.
     void publish();
     /// Takes the file away.

@@ -155,11 +155,7 @@ std::uint64_t TrajectoryWriter::File::finished_rows(bool overwrite) const try {
 /// A finished file is continued in a copy, so that it stays whole until the copy takes its name.
 void TrajectoryWriter::File::copy_finished() {
     forget();
-    std::error_code error;
-    fs::copy_file(lock.path(), lock.partial(), fs::copy_options::overwrite_existing, error);
-    if (error)
-        throw RunError(fmt::format("{}: cannot be copied to {}: {}", lock.path().string(),
-                                   lock.partial().string(), error.message()));
+    lock.copy_from(lock.path());
     note.clear();
 }
 

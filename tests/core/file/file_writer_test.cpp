@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <iostream>
 #include <random>
 #include <string>
 
@@ -131,6 +132,36 @@ TEST_F(FileWriterTest, AFullDiskLeavesNothing) {
         EXPECT_FALSE(fs::exists(path));
         EXPECT_FALSE(fs::exists(folder_ / "file.partial"));
     }
+}
+
+TEST_F(FileWriterTest, ACopyIsWholeOrGone) {
+    std::mt19937_64 random(1);
+    std::string bytes(3'000'001, '\0');
+    for (char& c : bytes) c = static_cast<char>(random());
+    write_file(folder_ / "source", bytes);
+    const fs::path path = folder_ / "copy";
+    // What a killed process left may be longer.
+    std::ofstream(path.string() + ".partial") << std::string(5'000'000, 'x');
+    {
+        PartialFile copy(path);
+        copy.copy_from(folder_ / "source");
+        copy.publish();
+    }
+    EXPECT_TRUE(content(path) == bytes);
+
+    const int status = status_of_child([&] {
+        limit_file_size(2'000'000);
+        PartialFile copy(path);
+        const std::string error = error_of<RunError>([&] { copy.copy_from(folder_ / "source"); });
+        const std::string expected =
+            fmt::format("{}: cannot be copied to {}: File too large", (folder_ / "source").string(),
+                        path.string() + ".partial");
+        if (error != expected) std::cerr << error << "\n";
+        return error == expected ? 7 : 1;
+    });
+    EXPECT_EQ(status, 7);
+    EXPECT_FALSE(fs::exists(path.string() + ".partial"));
+    EXPECT_TRUE(content(path) == bytes);
 }
 
 TEST_F(FileWriterTest, NamesThePathAndTheReason) {
