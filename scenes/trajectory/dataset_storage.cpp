@@ -46,8 +46,7 @@ DatasetStorage checked_storage(const Handle& dataset, const std::string& name,
         require(chunk_bytes <= 256.0 * (1 << 20), "has chunks of more than 256 MiB");
     }
     for (hsize_t side : storage.extent) storage.bytes *= static_cast<double>(side);
-    const double stored = static_cast<double>(
-        std::min<std::uint64_t>(H5Dget_storage_size(dataset.get()), file_bytes));
+    const double stored = static_cast<double>(std::min(hdf5::storage_size(dataset), file_bytes));
     require(storage.bytes <= compression * stored, "claims to hold more than the file can");
     return storage;
 }

@@ -300,6 +300,14 @@ Extent extent_of(const Handle& dataset) {
     return extent;
 }
 
+std::uint64_t storage_size(const Handle& dataset) {
+    // A dataset without storage and a failure are both 0; only the second leaves a reason.
+    H5Eclear2(H5E_DEFAULT);
+    const hsize_t bytes = H5Dget_storage_size(dataset.get());
+    if (bytes == 0 && H5Eget_num(H5E_DEFAULT) > 0) throw_reason();
+    return bytes;
+}
+
 void read_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,
                void* values) {
     const Selection rows = select_rows(dataset, begin, count);

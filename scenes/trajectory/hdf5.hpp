@@ -102,6 +102,8 @@ void read_attribute(hid_t object, const std::string& name, hid_t memory_type, vo
 std::string read_text_attribute(hid_t object, const std::string& name);
 
 Extent extent_of(const Handle& dataset);
+/// Bytes that a dataset takes in its file. @throws Failure   they cannot be counted
+std::uint64_t storage_size(const Handle& dataset);
 /// Items begin <= i < begin + count along the first axis, all along the others; at least one.
 void read_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,
                void* values);
