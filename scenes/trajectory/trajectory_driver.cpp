@@ -33,6 +33,12 @@ constexpr haddr_t kMostAddress = (haddr_t{1} << 63) - 1;
 /// Where a superblock of version 0 holds the file's end.
 constexpr std::size_t kEndAt = 40;
 
+/// A growing file's superblock says that it ends further behind than it does, by an eighth of it
+/// and 1 MiB, at most 64 MiB: what a reader that has looked at the superblock already finds to have
+/// been added meanwhile shall lie within. Less: more readers fail amid a flush. More: files look
+/// larger, though what is not written takes no place on the disk.
+constexpr haddr_t kLeastRoom = 1 << 20, kMostRoom = 64 << 20, kRoomPart = 8;
+
 using Bytes = std::vector<unsigned char>;
 
 /// A structure that HDF5 has given out but that is not in the file yet.
@@ -47,7 +53,8 @@ struct OrderedFile : H5FD_t {
     dev_t device = 0;
     ino_t inode = 0;
     haddr_t end = 0;        ///< of what is allocated
-    haddr_t known_end = 0;  ///< by the superblock that is in the file
+    haddr_t known_end = 0;  ///< by HDF5's superblock at the last flush
+    haddr_t said_end = 0;   ///< by the superblock that is in the file
     std::map<haddr_t, Piece> held;
     int broken = 0;  ///< errno of the first write that failed: nothing after it reaches the file
 };
@@ -94,14 +101,17 @@ herr_t write_now(OrderedFile& f, haddr_t at, const unsigned char* bytes, std::si
     return failed_call(f.broken);
 }
 
-herr_t set_length(OrderedFile& f, haddr_t length) {
-    if (f.broken != 0) return failed_call(f.broken);
+/// @return errno, 0 if done
+int change_length(const OrderedFile& f, haddr_t length) {
     int result;
     do result = ::ftruncate(f.descriptor, static_cast<off_t>(length));
     while (result < 0 && errno == EINTR);
-    if (result == 0) return 0;
-    f.broken = errno;
-    return failed_call(f.broken);
+    return result == 0 ? 0 : errno;
+}
+
+herr_t set_length(OrderedFile& f, haddr_t length) {
+    if (f.broken == 0) f.broken = change_length(f, length);
+    return f.broken == 0 ? 0 : failed_call(f.broken);
 }
 
 haddr_t length_of(const OrderedFile& f) {
@@ -116,6 +126,12 @@ haddr_t end_in(const unsigned char* superblock) {
     std::memcpy(&end, superblock + kEndAt, sizeof end);
     return end;
 }
+
+void put_end(unsigned char* superblock, haddr_t end) {
+    std::memcpy(superblock + kEndAt, &end, sizeof end);
+}
+
+haddr_t with_room(haddr_t end) { return end + std::min(kLeastRoom + end / kRoomPart, kMostRoom); }
 
 /// The order of structures that are in the file already: names, tree nodes from the root down, the
 /// headers that hold extents, and last the tables of groups, which point to names and headers.
@@ -133,8 +149,8 @@ herr_t write_held(OrderedFile& f) {
     if (f.held.empty()) return 0;
     using Entry = std::pair<const haddr_t, Piece>;
     std::vector<const Entry*> fresh, old;
-    const Entry* superblock = nullptr;
-    for (const Entry& entry : f.held) {
+    Entry* superblock = nullptr;
+    for (Entry& entry : f.held) {
         if (entry.second.type == H5FD_MEM_SUPER)
             superblock = &entry;
         else
@@ -150,12 +166,29 @@ herr_t write_held(OrderedFile& f) {
     order.insert(order.end(), old.begin(), old.end());
     if (superblock && end < f.known_end) order.push_back(superblock);
 
-    if (length_of(f) < end && set_length(f, end) < 0) return -1;
+    // A reader asks for the length before it reads the superblock: the length is ahead of that.
+    // Where files may not be so long there is no room.
+    haddr_t said = superblock ? with_room(end) : f.said_end;
+    if (length_of(f) < with_room(said) && change_length(f, with_room(said)) != 0) {
+        if (superblock) said = end;
+        if (length_of(f) < said && set_length(f, said) < 0) return -1;
+    }
+    if (superblock) put_end(superblock->second.bytes.data(), said);
     for (const Entry* entry : order)
         if (write_now(f, entry->first, entry->second.bytes.data(), entry->second.bytes.size()) < 0)
             return -1;
     f.known_end = end;
+    f.said_end = said;
     f.held.clear();
+    return 0;
+}
+
+/// Changes the end in the superblock alone.
+herr_t say_end(OrderedFile& f, haddr_t end) {
+    unsigned char bytes[sizeof end];
+    std::memcpy(bytes, &end, sizeof end);
+    if (write_now(f, kEndAt, bytes, sizeof bytes) < 0) return -1;
+    f.said_end = end;
     return 0;
 }
 
@@ -179,7 +212,8 @@ H5FD_t* open_ordered(const char* name, unsigned flags, hid_t, haddr_t) try {
     }
     file->device = status.st_dev;
     file->inode = status.st_ino;
-    if (static_cast<std::size_t>(moved) == sizeof superblock) file->known_end = end_in(superblock);
+    if (static_cast<std::size_t>(moved) == sizeof superblock)
+        file->known_end = file->said_end = end_in(superblock);
     return file.release();
 } catch (const std::bad_alloc&) {
     failed("no memory");
@@ -266,6 +300,8 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
     OrderedFile& f = ordered(file);
     if (!closing) return 0;
     if (write_held(f) < 0) return -1;
+    // Nobody adds to it any more: its end is where it is.
+    if (f.said_end != f.known_end && say_end(f, f.known_end) < 0) return -1;
     const haddr_t end = std::max(f.end, f.known_end);
     return length_of(f) == end ? 0 : set_length(f, end);
 }

@@ -9,7 +9,7 @@
 // driver (HDF5 1.10 Reference Manual, "Virtual File
 // Layer") keeps the structures back until HDF5 asks for a flush, and then writes them so that the
 // file is whole after every single write:
-//   1. the file is made as long as its superblock will say;
+//   1. the file is made as long as its superblock will say, which is longer than it is: see below;
 //   2. structures in places that the file on disk does not know yet, to which nothing points;
 //   3. the superblock, which now counts those places as part of the file;
 //   4. the old structures that point to the new ones, parents before children: a node that is split
@@ -18,6 +18,15 @@
 // An old structure lies in one page, so that one write changes all of it or nothing: the system
 // ends a write early only between pages. Rows themselves go out at once: they lie where nothing
 // points to yet, or behind the extents.
+//
+// Another process that reads meanwhile looks at one place after another: at the superblock before a
+// flush, it may be, and at the structures behind it after. HDF5 refuses what lies behind the end that
+// the superblock told, and a superblock that tells an end behind the file's. So a growing file's
+// superblock tells an end that is further away, the file is longer still, and both are right once it
+// is closed: what is in between is a hole, which takes no place on the disk. A file of a killed
+// process keeps it. What remains: who has read a tree's node before a flush that splits one of its
+// children finds the rows that have moved from there to be zeros. Where the file's time has not
+// changed from before it was opened until all was read, all is as one flush left it.
 //
 // It relies on nothing being freed and used again between two flushes: whoever makes a dataset
 // shorter, or takes out links, closes the file before more is written. A group's names stay where

@@ -9,6 +9,8 @@
 namespace tesserae::scenes {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// How far the square of a stored rotor's length may be from 1: far more than rounding, far less
 /// than shows.
 constexpr double kRotorLength = 1e-6;
@@ -16,7 +18,7 @@ constexpr double kRotorLength = 1e-6;
 }  // namespace
 
 struct TrajectoryReader::File {
-    std::filesystem::path path;
+    fs::path path;
     TrajectoryHeader header;
     std::vector<std::uint64_t> steps;
     std::vector<double> times;
@@ -30,8 +32,11 @@ struct TrajectoryReader::File {
         try {
             work();
         } catch (const hdf5::Failure& failure) {
-            throw InputError(
-                fmt::format("{}: not a readable trajectory: {}", path.string(), failure.what()));
+            // Under this name another process may be amid a flush.
+            const bool grows = path.extension() == ".partial";
+            const char* hint = grows ? "; if it is being written, try again" : "";
+            throw InputError(fmt::format("{}: not a readable trajectory: {}{}", path.string(),
+                                         failure.what(), hint));
         }
     }
 };
@@ -53,8 +58,7 @@ void TrajectoryReader::File::open() {
         throw hdf5::Failure("a time is not finite");
 }
 
-TrajectoryReader::TrajectoryReader(const std::filesystem::path& path)
-    : file_(std::make_unique<File>()) {
+TrajectoryReader::TrajectoryReader(const fs::path& path) : file_(std::make_unique<File>()) {
     file_->path = path;
     file_->reading([&] { file_->open(); });
 }

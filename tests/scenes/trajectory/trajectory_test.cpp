@@ -267,6 +267,49 @@ TEST_F(TrajectoryTest, RefusesASecondWriterAndAdmitsReaders) {
     ::close(written[1]);
 }
 
+TEST_F(TrajectoryTest, AFileThatIsOpenShowsWhatIsFlushedThen) {
+    // A reader has seen the superblock, and of the rest nothing, when trees grow and split.
+    constexpr std::uint64_t kRows = 150;
+    TrajectoryWriter writer(path_, make_header(9), make_steps(kRows), false);
+    append_rows(writer, 10, 9);
+    writer.flush();
+    const hdf5::Handle file = hdf5::open_file(partial_, false);
+    append_rows(writer, kRows, 9);
+    writer.flush();
+    const hdf5::Handle positions =
+        hdf5::open_dataset(file.get(), "/particles/bodies/position/value");
+    ASSERT_EQ(hdf5::extent_of(positions)[0], kRows);
+    for (std::uint64_t row = 0; row < kRows; ++row) {
+        std::vector<Vec4> read(9);
+        ASSERT_NO_THROW(hdf5::read_rows(positions, row, 1, H5T_NATIVE_DOUBLE, read.data())) << row;
+        EXPECT_EQ(read, make_row(row, 9).bodies.position) << row;
+    }
+}
+
+TEST_F(TrajectoryTest, AFileEndsWhereItSaysOnceItIsClosed) {
+    // While it grows it says more (trajectory_driver.hpp).
+    const auto said = [](const fs::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        in.seekg(40);
+        std::uint64_t end = 0;
+        in.read(reinterpret_cast<char*>(&end), sizeof end);
+        return end;
+    };
+    {
+        TrajectoryWriter writer(path_, make_header(9), make_steps(150), false);
+        append_rows(writer, 100, 9);
+        writer.flush();
+        EXPECT_LT(said(partial_), fs::file_size(partial_));
+    }
+    EXPECT_EQ(said(partial_), fs::file_size(partial_));
+    EXPECT_LT(said(partial_), 1u << 20);
+    TrajectoryWriter writer(path_, make_header(9), make_steps(150), false);
+    append_rows(writer, 150, 9);
+    writer.finish();
+    EXPECT_EQ(said(path_), fs::file_size(path_));
+    EXPECT_LT(said(path_), 1u << 20);
+}
+
 TEST_F(TrajectoryTest, AFullDiskIsAnErrorAndLeavesNoFile) {
     // From too little for the layout to enough for most rows; what was flushed goes on later.
     for (const unsigned bytes : {1000u, 20'000u, 60'000u, 150'000u}) {
