@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -42,7 +43,7 @@ void require(bool good, const char* what) {
 int checked_version(const std::filesystem::path& path) {
     require(std::filesystem::is_regular_file(path), "is not a file");
     std::ifstream in(path, std::ios::binary);
-    require(in.good(), "cannot be opened");
+    require(in.good(), std::strerror(errno));
     const auto number = [&] {
         std::int32_t value = 0;
         in.read(reinterpret_cast<char*>(&value), sizeof value);
@@ -54,7 +55,9 @@ int checked_version(const std::filesystem::path& path) {
         require(std::getline(in, word, '\0') && !in.eof(), "its header is cut off");
     };
     const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-    require(number() == Imf::MAGIC, "has another magic number");
+    const std::int32_t magic = number();
+    require(!in.bad(), std::strerror(errno));
+    require(magic == Imf::MAGIC, "has another magic number");
     const std::int32_t version = number();
     for (next_word(); !word.empty(); next_word()) {
         next_word();

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <fstream>
 #include <memory>
 #include <new>
+#include <system_error>
 
 #include "core/error.hpp"
+#include "core/file/file_writer.hpp"
 #include "render/file/whole_image.hpp"
 
 namespace tesserae::render {
@@ -56,9 +59,10 @@ class PartReader {
   public:
     explicit PartReader(const std::filesystem::path& path)
         : path_(path), in_(path, std::ios::binary), left_(0) {
+        if (!in_) failed(errno);
         std::error_code error;
         left_ = std::filesystem::file_size(path, error);
-        if (error) bad(error.message());
+        if (error) failed(error.value());
         if (get<std::array<char, 16>>() != kMagic) bad("it does not begin as one");
         const auto head = get<PartHeader>();
         info.part = {head.number, head.count};
@@ -102,11 +106,18 @@ class PartReader {
     [[noreturn]] void bad(const std::string& why) const {
         throw InputError(fmt::format("{}: not a whole part of a frame: {}", path_.string(), why));
     }
+    /// The system's failure says nothing about the part.
+    [[noreturn]] void failed(int error) const {
+        throw RunError(fmt::format("{}: cannot be read: {}", path_.string(),
+                                   std::generic_category().message(error)));
+    }
     void take(void* to, std::uint64_t count) {
         if (count > left_) bad("it is cut off");
         left_ -= count;
-        if (!in_.read(static_cast<char*>(to), static_cast<std::streamsize>(count)))
-            bad("it cannot be read");
+        if (!in_.read(static_cast<char*>(to), static_cast<std::streamsize>(count))) {
+            if (in_.eof()) bad("it is cut off");
+            failed(errno);
+        }
         checksum_.add(to, count);
     }
     template <class T>
@@ -248,8 +259,8 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
                                          parts[i].string(), i + 1, parts.size(),
                                          parts.front().string()));
         part.read_tiles([&](const PackedTile& tile) { image.write(tile); });
-        part.read_sums([&](std::uint64_t first, std::span<const Preview::Sum> sums) {
-            return small.add_sums(first, sums);
+        part.read_sums([&](std::uint64_t begin, std::span<const Preview::Sum> sums) {
+            return small.add_sums(begin, sums);
         });
     }
     if (!image.is_whole())

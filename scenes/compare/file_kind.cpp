@@ -1,8 +1,12 @@
 #include "scenes/compare/file_kind.hpp"
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
+
+#include "core/error.hpp"
 
 namespace tesserae::scenes {
 
@@ -17,7 +21,10 @@ FileKind kind_of(const std::filesystem::path& path) {
     std::array<unsigned char, 8> start = {};
     if (std::filesystem::is_regular_file(path, ignored)) {
         std::ifstream in(path, std::ios::binary);
-        in.read(reinterpret_cast<char*>(start.data()), start.size());
+        // A scene may be shorter.
+        if (!in.read(reinterpret_cast<char*>(start.data()), start.size()) && !in.eof())
+            throw InputError(
+                fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     }
     if (start == std::array<unsigned char, 8>{0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'})
         return FileKind::kTrajectory;

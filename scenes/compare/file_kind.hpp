@@ -16,7 +16,8 @@ enum class FileKind {
 const char* name_of(FileKind kind);
 
 /// Told by the file's first bytes, not by its name: what is neither HDF5 nor OpenEXR, nor a folder,
-/// is taken for a scene, whose loader also says what cannot be read at all.
+/// is taken for a scene, whose loader also says what is not there at all.
+/// @throws InputError   the system does not let it be read
 FileKind kind_of(const std::filesystem::path& path);
 
 }  // namespace tesserae::scenes

@@ -49,25 +49,36 @@ struct PartSet {
     auto operator<=>(const PartSet&) const = default;
 };
 
+std::vector<fs::path> paths_in(const fs::path& folder) {
+    std::vector<fs::path> paths;
+    std::error_code error;
+    fs::directory_iterator at(folder, error);
+    for (; !error && at != fs::directory_iterator(); at.increment(error))
+        paths.push_back(at->path());
+    if (error)
+        throw RunError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
+    return paths;
+}
+
 /// The parts that lie in a folder, by frame and count. What only looks like one is told.
 std::map<PartSet, std::set<int>> find_parts(const fs::path& frames, JoinReport& report) {
     std::map<PartSet, std::set<int>> found;
     const std::regex name(R"((.+\.[0-9]{4,8})\.([0-9]{1,9})of([0-9]{1,9})\.tiles)");
-    for (const auto& entry : fs::directory_iterator(frames)) {
-        const std::string file = entry.path().filename().string();
+    for (const fs::path& path : paths_in(frames)) {
+        const std::string file = path.filename().string();
         std::smatch match;
         if (!std::regex_match(file, match, name)) continue;
         const int number = std::stoi(match[2].str()), count = std::stoi(match[3].str());
         const fs::path exr = frames / (match[1].str() + ".exr");
         const bool is_part = 1 <= number && number <= count && count <= kMostFileParts &&
-                             part_file(exr, {number, count}) == entry.path();
+                             part_file(exr, {number, count}) == path;
         if (is_part)
             found[{match[1].str(), count}].insert(number);
         else
             report.wrong.push_back(
                 fmt::format("{}: is not the name of a part: expected NAME.0000.KofN.tiles with 1 "
                             "<= K <= N <= {}; remove it",
-                            entry.path().string(), kMostFileParts));
+                            path.string(), kMostFileParts));
     }
     return found;
 }

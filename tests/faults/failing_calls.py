@@ -146,6 +146,6 @@ def check(setup, table, effort, only=None):
         try_one(job, Fault.parse(only[1]), table)
         return
     if effort == "quick":
-        jobs = {name: jobs[name] for name in ("simulate", "join", "plot svg", "generate", "hash")}
+        jobs = {name: jobs[name] for name in ("simulate", "join", "plot svg", "hash")}
     count = {"quick": QUICK, "usual": USUAL, "all": None}[effort]
     in_parallel(lambda job: disturb(job, table, count), jobs.values())
