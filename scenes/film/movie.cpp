@@ -234,11 +234,15 @@ class Child {
         }
         return true;
     }
-    /// Ends its input and waits. @return it has succeeded
-    bool finish() {
+    /// Ends its input and waits. @return why it did not do its work; empty: it did
+    std::string finish() {
         close(socket_);
         socket_ = -1;
-        return wait() == 0;
+        const int status = wait();
+        if (WIFSIGNALED(status))
+            return fmt::format("was ended by signal {} ({})", WTERMSIG(status),
+                               ::strsignal(WTERMSIG(status)));
+        return status == 0 ? "" : "failed; it says why above";
     }
 
   private:
@@ -363,11 +367,12 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
             reads = ffmpeg.send(png);
             progress.update(i + 1);
         }
-        const bool succeeded = ffmpeg.finish();
+        std::string failure = ffmpeg.finish();
         if (stop_requested()) throw Stopped();
-        if (!succeeded || !reads)
-            throw RunError(
-                fmt::format("{}: ffmpeg failed; it says why above", report.file.string()));
+        const bool is_empty = fs::file_size(output.partial()) == 0;
+        if (failure.empty() && (!reads || is_empty)) failure = "ended before it had made the film";
+        if (!failure.empty())
+            throw RunError(fmt::format("{}: ffmpeg {}", report.file.string(), failure));
         append(output, signature_box(signature.text()));
     } catch (...) {
         output.remove();
