@@ -99,6 +99,13 @@ bool remove_leftovers(const PartSet& parts, const std::set<int>& there, const fs
     return true;
 }
 
+/// Whether another process has joined a frame meanwhile: it is there, and its parts go.
+bool is_joined_elsewhere(const PartSet& parts, const fs::path& exr) {
+    const std::vector<fs::path> files = part_files(exr, parts.count);
+    const auto is_there = [](const fs::path& file) { return fs::exists(file); };
+    return is_there(exr) && !std::all_of(files.begin(), files.end(), is_there);
+}
+
 }  // namespace
 
 fs::path part_file(const fs::path& exr, const render::FramePart& part) {
@@ -162,6 +169,8 @@ JoinReport join_folder(const fs::path& folder) {
                 report.missing.push_back(fmt::format("{}: parts {} of {}", parts.stem,
                                                      frames_text(missing), parts.count));
             }
+        } catch (const RunError&) {
+            if (!is_joined_elsewhere(parts, exr)) throw;
         } catch (const InputError& error) {
             // The other frames are joined all the same.
             report.wrong.push_back(
