@@ -1,7 +1,9 @@
 #include "scenes/film/film_folder.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "core/error.hpp"
 #include "render/file/preview_file.hpp"
@@ -15,13 +17,6 @@ namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_text(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
 
 /// A frame shows that the bodies stop, or that there is no next frame.
 bool shows_end(const Scene& scene, int frame) {
@@ -48,6 +43,16 @@ std::string other_frame(const Scene& scene, const render::ImageInfo& there,
 
 }  // namespace
 
+std::string read_file(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes;
+    if (in) bytes.assign(std::istreambuf_iterator<char>(in), {});
+    // A file that cannot be opened, or a read that failed; the end of a file is neither.
+    if (!in.is_open() || in.bad())
+        throw RunError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    return bytes;
+}
+
 void create_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -58,7 +63,7 @@ void create_folder(const fs::path& folder) {
 std::string require_folder_of(const Scene& scene, const fs::path& folder, Replace replace) {
     const fs::path file = folder / kSceneFile;
     if (replace == Replace::kAll || !fs::exists(file)) return {};
-    const std::string other = read_text(file);
+    const std::string other = read_file(file);
     std::string difference = first_difference(other, scene.effective);
     if (difference.empty()) return {};
     if (replace == Replace::kOtherLooks) {

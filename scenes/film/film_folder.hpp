@@ -29,6 +29,10 @@ enum class Replace {
 std::string require_folder_of(const Scene& scene, const std::filesystem::path& folder,
                               Replace replace);
 
+/// The bytes of a file.
+/// @throws RunError   with the path and the system's reason
+std::string read_file(const std::filesystem::path& file);
+
 /// Makes a folder and those above it.
 /// @throws RunError   with the path and the system's reason
 void create_folder(const std::filesystem::path& folder);

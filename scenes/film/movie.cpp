@@ -91,14 +91,6 @@ Size size_of(const std::string& png, const fs::path& file) {
     return {number(16), number(20)};
 }
 
-std::string read_file(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    if (!in) throw RunError(fmt::format("{}: cannot be read", file.string()));
-    return bytes.str();
-}
-
 /// A frame that is there besides its preview is one of the scene.
 void require_frame_of(const Scene& scene, const fs::path& file, int frame) {
     if (!fs::exists(file)) return;
@@ -113,9 +105,13 @@ void require_frame_of(const Scene& scene, const fs::path& file, int frame) {
 std::vector<int> numbers_in(const fs::path& folder, const std::string& name, std::string_view end) {
     std::vector<int> numbers;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-        if (const auto number = frame_number(entry.path().filename().string(), name, end))
+    fs::directory_iterator at(folder, error);
+    if (error == std::errc::no_such_file_or_directory) return numbers;
+    for (; !error && at != fs::directory_iterator(); at.increment(error))
+        if (const auto number = frame_number(at->path().filename().string(), name, end))
             numbers.push_back(*number);
+    if (error)
+        throw RunError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
     std::sort(numbers.begin(), numbers.end());
     return numbers;
 }
