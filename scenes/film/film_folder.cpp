@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "core/error.hpp"
 #include "render/file/preview_file.hpp"
@@ -45,12 +45,12 @@ std::string other_frame(const Scene& scene, const render::ImageInfo& there,
 
 std::string read_file(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
-    std::string bytes;
-    if (in) bytes.assign(std::istreambuf_iterator<char>(in), {});
-    // A file that cannot be opened, or a read that failed; the end of a file is neither.
-    if (!in.is_open() || in.bad())
+    std::ostringstream bytes;
+    bytes << in.rdbuf();
+    // An empty file gives nothing, which is no failure of reading.
+    if (!in.is_open() || bytes.bad())
         throw RunError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-    return bytes;
+    return bytes.str();
 }
 
 void create_folder(const fs::path& folder) {

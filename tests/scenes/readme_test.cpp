@@ -2,6 +2,7 @@
 // link is in the file.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 #include <vector>
 
@@ -55,6 +56,30 @@ TEST(Readme, ItsSceneRuns) {
     const Outcome run = tesserae({"run", scene, "-o", folder.file("out"), "--size", "64x36",
                                   "--samples", "1", "--frames", "0,89"});
     EXPECT_EQ(run.status, 0) << run.err;
+}
+
+/// tests/README.md says of every source that has no test file of its name where it is tested, and
+/// of no other.
+TEST(Readme, SaysWhereEverySourceIsTested) {
+    const std::string page = content(kSource / "tests" / "README.md");
+    const std::regex row(R"(\| ([a-z/]+): ([a-z0-9_, ]+) \|)"), word(R"([a-z0-9_]+)");
+    std::vector<std::string> told, lacking;
+    for (std::sregex_iterator at(page.begin(), page.end(), row), end; at != end; ++at) {
+        const std::string folder = (*at)[1], names = (*at)[2];
+        for (std::sregex_iterator n(names.begin(), names.end(), word); n != end; ++n)
+            told.push_back(folder + "/" + n->str());
+    }
+    for (const char* room : {"core", "parallel", "render", "scenes"})
+        for (const auto& entry : fs::recursive_directory_iterator(kSource / room)) {
+            fs::path source = fs::relative(entry.path(), kSource);
+            if (source.extension() != ".cpp") continue;
+            source.replace_extension();
+            if (!fs::exists(kSource / "tests" / (source.string() + "_test.cpp")))
+                lacking.push_back(source.string());
+        }
+    std::sort(told.begin(), told.end());
+    std::sort(lacking.begin(), lacking.end());
+    EXPECT_EQ(told, lacking);
 }
 
 }  // namespace
