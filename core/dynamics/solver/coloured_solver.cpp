@@ -31,7 +31,7 @@ Vec4 velocity_change(const Change& change) {
 /// Writes an angular velocity into a body's record, rounded to float. It is not inlined because
 /// g++ 12 would leave the rounding out: where it makes vectors of doubles that become floats and
 /// then doubles again, it takes the first doubles for the last ones. A body would then lose another
-/// change than the one that its record holds.
+/// change than the one that its record holds. tests/roundings.sh looks for such places.
 [[gnu::noinline]] void put_angular(const Bivector& w, BodyChange& change) {
     const auto& [xy, xz, xw, yz, yw, zw] = w;
     change.first_planes = {static_cast<float>(xy), static_cast<float>(xz), static_cast<float>(xw),
