@@ -197,8 +197,9 @@ void add_rim_ahead(const Simulation& simulation, const StepData& step, const Bod
         if (simulation.type_of(on).movable || !rolls(simulation, step, id, on)) continue;
         const Vec4 out = id == pair.a ? list[first].normal : Vec4(-list[first].normal);
         const double off = kOverFace * simulation.type_of(id).radius;
-        const auto is_over = [&](const Vec4& point, double height) {
-            return is_over_face(simulation, step, on, point, out, height, off);
+        // Named anew: clang 14 lets no lambda have a structured binding.
+        const auto is_over = [&, ground = on](const Vec4& point, double height) {
+            return is_over_face(simulation, step, ground, point, out, height, off);
         };
         return add_ahead(simulation, step, id, out, is_over, first, list);
     }

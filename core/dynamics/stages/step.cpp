@@ -192,7 +192,9 @@ void sum_contacts(StepData& step, Range contacts) {
             // those that do not is 0.
             const double separation = step.contacts.separation(i);
             const double overlap = std::max(0.0, -separation);
-            sums.contacts += !(separation > 0) | (step.impulses[i].normal > 0) | (step.hit[i] != 0);
+            const int touches = !(separation > 0), is_hit = step.hit[i] != 0;
+            const int pushes = step.impulses[i].normal > 0;
+            sums.contacts += touches | pushes | is_hit;
             sums.sum += overlap;
             sums.penetration = std::max(sums.penetration, overlap);
         }
