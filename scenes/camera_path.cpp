@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace tesserae::scenes {
-namespace {
 
 /// Points and numbers: straight lines.
-struct Flat {
+struct CameraPath::Flat {
     template <class T>
     static T way(const T& from, const T& to) {
         return to - from;
@@ -20,7 +18,7 @@ struct Flat {
 };
 
 /// Unit vectors: great arcs.
-struct Sphere {
+struct CameraPath::Sphere {
     /// The tangent at `from` that points to `to`, as long as the arc.
     static Vec4 way(const Vec4& from, const Vec4& to) {
         const Vec4 across = to - from.dot(to) * from;
@@ -35,18 +33,25 @@ struct Sphere {
     }
 };
 
-template <class T>
-struct Knot {
-    double time;
-    T value;
-};
+namespace {
 
 bool is_zero(double v) { return v == 0; }
 bool is_zero(const Vec4& v) { return v.isZero(0); }
 
+}  // namespace
+
+template <class T>
+CameraPath::Knots<T> CameraPath::knots_of(std::span<const CameraKey> keys,
+                                          std::optional<T> CameraKey::*part) {
+    Knots<T> knots;
+    for (const CameraKey& key : keys)
+        if (key.*part) knots.push_back({key.time, *(key.*part)});
+    return knots;
+}
+
 /// Change per second at knot i.
 template <class Space, class T>
-T slope(const std::vector<Knot<T>>& knots, std::size_t i) {
+T CameraPath::slope(const Knots<T>& knots, std::size_t i) {
     const auto rate = [&](std::size_t to) -> T {
         return Space::way(knots[i].value, knots[to].value) / (knots[to].time - knots[i].time);
     };
@@ -59,7 +64,8 @@ T slope(const std::vector<Knot<T>>& knots, std::size_t i) {
 }
 
 template <class Space, class T>
-T value_at(const std::vector<Knot<T>>& knots, double time) {
+T CameraPath::value_at(const Knots<T>& knots, const T& still, double time) {
+    if (knots.empty()) return still;
     const auto next = std::upper_bound(knots.begin(), knots.end(), time,
                                        [](double t, const Knot<T>& k) { return t < k.time; });
     if (next == knots.begin()) return knots.front().value;
@@ -75,25 +81,21 @@ T value_at(const std::vector<Knot<T>>& knots, double time) {
     return points[0];
 }
 
-template <class Space, class T>
-void move(T& value, std::span<const CameraKey> keys, std::optional<T> CameraKey::*part,
-          double time) {
-    std::vector<Knot<T>> knots;
-    for (const CameraKey& key : keys)
-        if (key.*part) knots.push_back({key.time, *(key.*part)});
-    if (!knots.empty()) value = value_at<Space>(knots, time);
-}
+CameraPath::CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys)
+    : still_(still),
+      position_(knots_of(keys, &CameraKey::position)),
+      look_at_(knots_of(keys, &CameraKey::look_at)),
+      up_(knots_of(keys, &CameraKey::up)),
+      fourth_(knots_of(keys, &CameraKey::fourth)),
+      field_of_view_(knots_of(keys, &CameraKey::field_of_view)) {}
 
-}  // namespace
-
-render::CameraDescription camera_at(const render::CameraDescription& still,
-                                    std::span<const CameraKey> keys, double time) {
-    render::CameraDescription camera = still;
-    move<Flat>(camera.position, keys, &CameraKey::position, time);
-    move<Flat>(camera.look_at, keys, &CameraKey::look_at, time);
-    move<Sphere>(camera.up, keys, &CameraKey::up, time);
-    move<Sphere>(camera.fourth, keys, &CameraKey::fourth, time);
-    move<Flat>(camera.field_of_view, keys, &CameraKey::field_of_view, time);
+render::CameraDescription CameraPath::at(double time) const {
+    render::CameraDescription camera = still_;
+    camera.position = value_at<Flat>(position_, still_.position, time);
+    camera.look_at = value_at<Flat>(look_at_, still_.look_at, time);
+    camera.up = value_at<Sphere>(up_, still_.up, time);
+    camera.fourth = value_at<Sphere>(fourth_, still_.fourth, time);
+    camera.field_of_view = value_at<Flat>(field_of_view_, still_.field_of_view, time);
     return camera;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "render/description.hpp"
 
@@ -15,14 +17,49 @@ struct CameraKey {
     std::optional<double> field_of_view;
 };
 
-/// The camera at a time [s]: each part goes smoothly through the keys that name it (ascending in
+/// The camera at any time: each part goes smoothly through the keys that name it (ascending in
 /// time), stands still between equal ones and before the first and after the last, and stays as in
 /// `still` where none does. A part with two keys moves evenly. Directions turn on the sphere.
 ///
 /// Cubic Bezier arcs whose slopes at a key are those of the parabola through it and its neighbours
 /// (Catmull-Rom for uneven times), by de Casteljau's construction, which on the sphere takes great
 /// arcs for segments (Shoemake 1985).
-render::CameraDescription camera_at(const render::CameraDescription& still,
-                                    std::span<const CameraKey> keys, double time);
+class CameraPath {
+  public:
+    CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys);
+
+    /// In a time that grows with the logarithm of the number of keys.
+    /// @param time   [s]
+    render::CameraDescription at(double time) const;
+
+  private:
+    template <class T>
+    struct Knot {
+        double time;
+        T value;
+    };
+    /// The keys that name a part.
+    template <class T>
+    using Knots = std::vector<Knot<T>>;
+    struct Flat;
+    struct Sphere;
+
+    template <class T>
+    static Knots<T> knots_of(std::span<const CameraKey> keys, std::optional<T> CameraKey::*part);
+    template <class Space, class T>
+    static T slope(const Knots<T>& knots, std::size_t i);
+    template <class Space, class T>
+    static T value_at(const Knots<T>& knots, const T& still, double time);
+
+    render::CameraDescription still_;
+    Knots<Vec4> position_, look_at_, up_, fourth_;
+    Knots<double> field_of_view_;
+};
+
+/// The same for one time: it takes as long as there are keys.
+inline render::CameraDescription camera_at(const render::CameraDescription& still,
+                                           std::span<const CameraKey> keys, double time) {
+    return CameraPath(still, keys).at(time);
+}
 
 }  // namespace tesserae::scenes

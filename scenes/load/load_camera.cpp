@@ -72,10 +72,11 @@ void load_camera(TableReader& root, const Origin& origin, Scene& scene, Effectiv
 
 void require_view(const Scene& scene, const Origin& origin) {
     if (scene.camera_keys.empty()) return;
+    const CameraPath path(scene.camera, scene.camera_keys);
     for (int frame = 0, count = frame_count(scene); frame < count; ++frame) {
         const double time = frame_instant(scene, frame).time;
         try {
-            const render::Camera camera(camera_at(scene.camera, scene.camera_keys, time), 1, 1);
+            const render::Camera camera(path.at(time), 1, 1);
         } catch (const InputError& error) {
             throw InputError(
                 fmt::format("{}: frame {} at {} s: {}; move a [[camera.key]] or add "

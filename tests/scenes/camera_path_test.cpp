@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <random>
 #include <vector>
 
@@ -166,6 +167,22 @@ TEST(CameraPath, RefusesAFrameWithoutAxes) {
         "[[camera.key]]\ntime = 1\nfourth = [0, 0, 0, -1]\n");
     EXPECT_NE(error.find("frame 15 at 0.5 s"), std::string::npos) << error;
     EXPECT_NE(error.find("parallel to the forward direction"), std::string::npos) << error;
+}
+
+/// A film's cameras are all checked when its scene is read: if each took as long as there are keys,
+/// these would take minutes.
+TEST(CameraPath, OfManyKeysIsReadAtOnce) {
+    constexpr int kKeys = 10'000, kFrames = 500'000;
+    std::string text = fmt::format(
+        "[physics]\nduration = {}\n[render]\nframes_per_second = 100\n"
+        "[[body]]\nshape = \"hypersphere\"\nradius = 1\n",
+        kFrames / 100);
+    for (int i = 0; i < kKeys; ++i)
+        text += fmt::format("[[camera.key]]\ntime = {}\nposition = [0, {}, -8, 0]\n", 0.5 * i,
+                            1 + i % 2);
+    const std::clock_t begin = std::clock();  // of this process alone
+    EXPECT_EQ(load_text(text).camera_keys.size(), std::size_t{kKeys});
+    EXPECT_LT(std::clock() - begin, 20 * CLOCKS_PER_SEC);
 }
 
 }  // namespace
