@@ -5,12 +5,15 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "scenes/load/effective.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
 constexpr double kLastStep = 9007199254740992.0;  // 2^53: a step's number is exact as a double
 constexpr int kMaxFrames = 10'000'000;
+/// Frames that a text may list, those in several ranges counted again.
+constexpr std::size_t kMostListed = 2 * kMaxFrames;
 
 /// A frame whose instant is this close to a step (in steps, relative) is at that step: what
 /// k * steps_per_second / frames_per_second loses to rounding, with room to spare.
@@ -146,6 +149,8 @@ std::vector<int> parse_frames(const std::string& text, int count) {
         for (int k = 0; k < count; ++k) frames.push_back(k);
         return frames;
     }
+    std::vector<bool> is_asked(static_cast<std::size_t>(count));
+    std::size_t listed = 0;
     const char* at = text.data();
     const char* const end = at + text.size();
     while (true) {
@@ -158,13 +163,18 @@ std::vector<int> parse_frames(const std::string& text, int count) {
         if (last >= count)
             bad_frames(text, fmt::format("the scene has no frame {}: its frames are 0 to {}", last,
                                          count - 1));
-        for (int k = first; k <= last; k += std::min(step, count)) frames.push_back(k);
+        // Ranges may overlap, but not without end.
+        listed += static_cast<std::size_t>((last - first) / step) + 1;
+        if (listed > kMostListed)
+            bad_frames(printable(text), fmt::format("lists more than {} frames", kMostListed));
+        for (int k = first; k <= last; k += std::min(step, count))
+            is_asked[static_cast<std::size_t>(k)] = true;
         if (at == end) break;
         if (*at != ',') bad_frames(text, fmt::format("unexpected \"{}\"", std::string(at, end)));
         ++at;
     }
-    std::sort(frames.begin(), frames.end());
-    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    for (int k = 0; k < count; ++k)
+        if (is_asked[static_cast<std::size_t>(k)]) frames.push_back(k);
     return frames;
 }
 

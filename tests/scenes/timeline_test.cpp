@@ -96,6 +96,14 @@ TEST(Timeline, RefusesBadRanges) {
         EXPECT_THROW(parse_frames(bad, 10), InputError) << bad;
 }
 
+/// 2 KB of text would else take gigabytes.
+TEST(Timeline, RefusesRangesThatOverlapWithoutEnd) {
+    std::string text = "0-9999999";
+    EXPECT_EQ(parse_frames(text + ",0-9999998", 10'000'000).size(), 10'000'000u);
+    for (int i = 0; i < 200; ++i) text += ",0-9999999";
+    EXPECT_THROW(parse_frames(text, 10'000'000), InputError);
+}
+
 TEST(Timeline, RefusesMoreFramesThanCanBeNumbered) {
     EXPECT_THROW(frame_count(scene_of(1e300, 240, 30)), InputError);
     EXPECT_THROW(step_count(scene_of(1e300, 240, 30)), InputError);
