@@ -9,9 +9,7 @@
 namespace tesserae::scenes {
 
 /// Reads, overrides, checks and expands a scene file.
-/// @param sets   "KEY=VALUE" in order, as for --set; see Overrides. `render.crop=[x0, y0, x1, y1]`
-/// is
-///               known here only, not in files.
+/// @param sets   "KEY=VALUE" in order, as for --set; see Overrides
 /// @throws InputError   the file cannot be read, or anything in it is wrong:
 ///                      `file:line:column: body 3 "crate": radius = -1: expected ...`
 ///

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -125,6 +127,14 @@ struct NextTime {
                                          toml_text(before.back().time)));
     }
 };
+/// The direction as a unit vector. One that is unit to rounding stays as it is, so that what was
+/// made unit once is itself again when the canonical text is read.
+inline Vec4 unit_direction(const Vec4& direction) {
+    constexpr double kUnit = 16 * std::numeric_limits<double>::epsilon();
+    if (std::abs(direction.squaredNorm() - 1) <= kUnit) return direction;
+    return stable_normalized(direction);
+}
+
 /// A direction, made unit, that the camera can turn to from the last key's in one way only.
 struct Turn {
     std::span<const CameraKey> before;
@@ -132,7 +142,7 @@ struct Turn {
 
     void read(TableReader& reader, const char* key, Vec4& direction) const {
         reader.read(key, direction, Rule::kNonZero);
-        direction = stable_normalized(direction);
+        direction = unit_direction(direction);
         const auto last = std::find_if(before.rbegin(), before.rend(),
                                        [&](const CameraKey& k) { return (k.*part).has_value(); });
         if (last != before.rend() && !((*(*last.*part) + direction).norm() > kParallel))
@@ -170,13 +180,12 @@ struct FrameSize {
         out.line(key, fmt::format("[{}, {}]", s.width, s.height));
     }
 };
-/// Known to overrides only: a crop is a way to look at a scene, not a part of one.
+/// What --crop sets. Scene files may have it too: the canonical text does, which is read again from
+/// trajectories and folders of frames.
 struct CropOf {
     int width, height;
 
     void read(TableReader& reader, const char* key, render::Crop& crop) const {
-        if (!reader.is_override(key))
-            reader.fail(key, "is no key of scene files; use --crop x0,y0,x1,y1");
         std::array<std::int64_t, 4> c = {};
         reader.read(key, c, {0, kMaxSize});
         if (c[0] >= c[2] || c[1] >= c[3] || c[2] > width || c[3] > height)

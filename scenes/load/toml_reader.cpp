@@ -145,11 +145,6 @@ void TableReader::fail_here(std::string_view what) const {
     throw InputError(fmt::format("{}: {}: {}", place_of(table_.source(), origin_), subject_, what));
 }
 
-bool TableReader::is_override(std::string_view key) {
-    const toml::node* node = find(key);
-    return node != nullptr && node->source().path != nullptr;
-}
-
 void TableReader::finish() {
     for (const auto& [key, node] : table_) {
         if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;

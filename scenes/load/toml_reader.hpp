@@ -104,8 +104,6 @@ class TableReader {
     /// The tables of an array of tables, in file order.
     std::vector<const toml::table*> tables(std::string_view key);
 
-    /// The value comes from --set, not from the file.
-    bool is_override(std::string_view key);
     [[noreturn]] void fail(std::string_view key, std::string_view what);
     [[noreturn]] void fail_here(std::string_view what) const;
     /// What fail() would say; empty where the key is absent.

@@ -225,7 +225,6 @@ const std::vector<Broken>& broken_scenes() {
         {"[render]\nchannels = [\"id\", \"id\"]\n", "2:19", {"channels[1] = \"id\"", "twice"}},
         {"[render]\nsky = \"clear\"\n", "2:7", {"\"opaque\"", "\"transparent\""}},
         {"[render]\nchannels = []\n", "2:12", {"at least one"}},
-        {"[render]\ncrop = [0, 0, 8, 8]\n", "2:8", {"use --crop"}},
         {"[render]\nintegrator = \"euler\"\n", "2:14", {"\"direct\"", "\"path\""}},
         {"[render]\nbounces = 1000001\n", "2:11", {"0 to 1000000"}},
         {"[render]\nbounces = -1\n", "2:11", {"bounces = -1"}},
