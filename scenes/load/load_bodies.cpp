@@ -205,6 +205,19 @@ class BodyLoader {
     }
 
   private:
+    /// Before completed(): clang 14 makes no code of it otherwise.
+    template <class S>
+    void complete_hull(TableReader& reader, S& shape) {
+        try {
+            complete(shape);
+        } catch (const InputError& error) {
+            const char* culprit = nullptr;
+            shape.parameters(shape, [&](const char* key, auto&, Rule) {
+                if (culprit == nullptr) culprit = key;
+            });
+            reader.fail(culprit, error.what());
+        }
+    }
     /// Equal hulls share what was made of them.
     Shape completed(TableReader& reader, Shape shape) {
         EffectiveWriter parameters;
@@ -224,18 +237,6 @@ class BodyLoader {
                 return own;
             },
             shape);
-    }
-    template <class S>
-    void complete_hull(TableReader& reader, S& shape) {
-        try {
-            complete(shape);
-        } catch (const InputError& error) {
-            const char* culprit = nullptr;
-            shape.parameters(shape, [&](const char* key, auto&, Rule) {
-                if (culprit == nullptr) culprit = key;
-            });
-            reader.fail(culprit, error.what());
-        }
     }
     void check_name(TableReader& reader, bool named, std::size_t number, std::string& name) {
         if (!named) name = fmt::format("body-{}", number);
