@@ -1,7 +1,6 @@
 // Trajectories in which bytes are damaged: of every four bytes of the input three say where in a
-// valid file, and one what is there instead. Only what HDF5 does not take for its own structures is
-// changed: damage in these is left to HDF5 to notice (see TrajectoryReader), which in version 1.10
-// it does not always do. Then the file may be cut off.
+// valid file, and one what is there instead. Then the file may be cut off. Damage in HDF5's own
+// structures is left to HDF5 to notice (see TrajectoryReader): a crash inside of it is its own.
 #include <algorithm>
 
 #include "tests/fuzz/example.hpp"
