@@ -1,5 +1,6 @@
 #include "scenes/trajectory/resume_record.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/error.hpp"
@@ -147,6 +148,20 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (has_angular) record.memory.angular_impulses.resize(impulses);
     for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;
+}
+
+bool is_of_bodies(const StepMemory& memory, std::uint64_t bodies) {
+    const auto is_pair = [&](const auto& of) { return of.a < of.b && of.b < bodies; };
+    const auto& runs = memory.impulses.runs();
+    const auto is_of_pairs = [&](const KeptManifolds& list) {
+        return std::all_of(list.begin(), list.end(),
+                           [&](const auto& manifold) { return is_pair(*manifold); });
+    };
+    return std::all_of(runs.begin(), runs.end(), is_pair) &&
+           std::all_of(memory.kept.begin(), memory.kept.end(), is_of_pairs) &&
+           std::all_of(memory.asleep.begin(), memory.asleep.end(),
+                       [&](BodyId island) { return island == kAwake || island < bodies; }) &&
+           (memory.asleep.empty() || memory.asleep.size() == bodies);
 }
 
 std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& before,

@@ -23,6 +23,10 @@ std::string to_bytes(const ResumeRecord& record);
 /// None if the bytes are not those of a whole record; what follows them is ignored.
 std::optional<ResumeRecord> to_record(std::string_view bytes);
 
+/// Whether all that the memory names is one of so many bodies, and what is of every body is of that
+/// many: a step looks them up without another check.
+bool is_of_bodies(const StepMemory& memory, std::uint64_t bodies);
+
 /// The hash of a run of rows, from that of the rows before and one row more.
 std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& before,
                                            const StepFacts& facts, const Bodies& bodies);

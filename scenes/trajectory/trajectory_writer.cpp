@@ -24,10 +24,21 @@ constexpr std::chrono::seconds kFlushInterval(2);
 constexpr const char* kSlots[2] = {"/parameters/resume/a", "/parameters/resume/b"};
 constexpr hsize_t kSlotChunk = 64 * 1024;
 
+/// A dataset of records: bytes in a row, in chunks, so that more of them can be written.
+hdf5::Handle open_record(const hdf5::Handle& file, const std::string& name) {
+    hdf5::Handle dataset = hdf5::open_dataset(file.get(), name);
+    const hdf5::Handle type(H5Dget_type(dataset.get()), H5Tclose);
+    const hdf5::Handle creation(H5Dget_create_plist(dataset.get()), H5Pclose);
+    if (H5Tget_class(type.get()) != H5T_INTEGER || H5Tget_size(type.get()) != 1 ||
+        hdf5::extent_of(dataset).size() != 1 || H5Pget_layout(creation.get()) != H5D_CHUNKED)
+        throw hdf5::Failure(name + ": is no record to continue from");
+    return dataset;
+}
+
 std::optional<ResumeRecord> read_record(const hdf5::Handle& dataset, std::uint64_t file_bytes) {
-    const hdf5::Extent extent = hdf5::extent_of(dataset);
-    if (extent.size() != 1 || extent[0] == 0 || extent[0] > file_bytes) return std::nullopt;
-    std::string bytes(extent[0], '\0');
+    const hsize_t count = hdf5::extent_of(dataset)[0];
+    if (count == 0 || count > file_bytes) return std::nullopt;
+    std::string bytes(count, '\0');
     hdf5::read_rows(dataset, 0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
     return to_record(bytes);
 }
@@ -162,8 +173,7 @@ void TrajectoryWriter::File::copy_finished() {
 /// The rows since the flush before are those that the record was made of.
 bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
     if (candidate.rows > data.whole_rows()) return false;
-    const std::size_t sleepers = candidate.memory.asleep.size();
-    if (sleepers != 0 && sleepers != header.bodies) return false;
+    if (!is_of_bodies(candidate.memory, header.bodies)) return false;
     Bodies bodies = room_for(header.bodies);
     std::array<std::uint64_t, 2> hash = {};
     StepFacts facts;
@@ -192,10 +202,10 @@ bool TrajectoryWriter::File::find_record(std::uint64_t file_bytes) {
     };
     const bool grows = hdf5::has_link(file.get(), kResume);
     for (int i = 0; grows && i < 2; ++i) {
-        slots[i] = hdf5::open_dataset(file.get(), kSlots[i]);
+        slots[i] = open_record(file, kSlots[i]);
         if (takes(slots[i])) next_slot = 1 - i;
     }
-    checkpoint = hdf5::open_dataset(file.get(), kCheckpoint);
+    checkpoint = open_record(file, kCheckpoint);
     takes(checkpoint);
     return found;
 }
@@ -289,7 +299,7 @@ void TrajectoryWriter::File::start() {
     file = hdf5::create_file(lock.partial());
     create_layout(file, header);
     create_slots();
-    checkpoint = hdf5::open_dataset(file.get(), kCheckpoint);
+    checkpoint = open_record(file, kCheckpoint);
     hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
     data = open_datasets(file, header.bodies, fs::file_size(lock.partial()), Opened::kToGrow);
     rows = 0;

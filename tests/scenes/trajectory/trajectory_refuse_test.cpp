@@ -202,6 +202,68 @@ TEST_F(TrajectoryRefuse, ALeftoverThatTheSystemDoesNotLetBeRead) {
     EXPECT_EQ(TrajectoryWriter(path_, make_header(3), make_steps(40), false).rows(), 12u);
 }
 
+/// Records are written where others were.
+TEST_F(TrajectoryRefuse, ALeftoverWithoutPlacesForRecords) {
+    const std::function<void(hid_t, const char*)> changes[] = {
+        [](hid_t f, const char* name) { make_text(f, name, 8); },
+        [](hid_t f, const char* name) {
+            make_dataset(f, name, H5T_STD_U8LE, {8, 8}, 1);
+        },
+        [](hid_t f, const char* name) { make_dataset(f, name, H5T_STD_U8LE, {8}, 0); },
+        [](hid_t f, const char* name) { make_dataset(f, name, H5T_STD_I64LE, {8}, 1); }};
+    for (const char* name :
+         {"/parameters/checkpoint", "/parameters/resume/a", "/parameters/resume/b"})
+        for (const auto& change : changes) {
+            fs::remove(partial_);
+            write_leftover(make_header(3), 12);
+            const hid_t file = H5Fopen(partial_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+            ASSERT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
+            change(file, name);
+            ASSERT_GE(H5Fclose(file), 0);
+            TrajectoryWriter writer(path_, make_header(3), make_steps(40), false);
+            EXPECT_EQ(writer.note(), fmt::format("{}: {}: is no record to continue from; starting "
+                                                 "anew",
+                                                 partial_.string(), name));
+            append_rows(writer, 2, 3);
+            writer.flush();
+        }
+}
+
+/// A step would read beyond the bodies.
+TEST_F(TrajectoryRefuse, ARecordThatNamesOtherBodies) {
+    const std::function<void(StepMemory&)> changes[] = {
+        [](StepMemory& m) { m.asleep[1] = 3; },
+        [](StepMemory& m) { m.asleep.push_back(0), m.still.push_back(0); },
+        [](StepMemory& m) {
+            m.impulses.push_back({{1, {}}, 1, 3, 0});
+        },
+        [](StepMemory& m) {
+            m.impulses.push_back({{1, {}}, 2, 2, 0});
+        },
+        [](StepMemory& m) {
+            KeptManifold manifold;
+            manifold.a = 1, manifold.b = 1u << 30;
+            m.kept.emplace_back().push_back(std::make_shared<KeptManifold>(manifold));
+        }};
+    StepMemory good = make_row(2, 3).memory;
+    good.angular_impulses.clear();
+    ASSERT_EQ(good.asleep.size(), 3u);
+    for (int i = -1; i < static_cast<int>(std::size(changes)); ++i) {
+        fs::remove(partial_);
+        StepMemory memory = good;
+        if (i >= 0) changes[i](memory);
+        {
+            // The first row is flushed with its record, the others go with the last one's.
+            TrajectoryWriter writer(path_, make_header(3), make_steps(40), false);
+            append_rows(writer, 2, 3);
+            const Row row = make_row(2, 3);
+            writer.append(row.facts, row.bodies, memory);
+        }
+        const TrajectoryWriter writer(path_, make_header(3), make_steps(40), false);
+        EXPECT_EQ(writer.rows(), i < 0 ? 3u : 1u) << i << ": " << writer.note();
+    }
+}
+
 TEST_F(TrajectoryRefuse, ReplacesAnUnreadableLeftoverAndSaysSo) {
     std::ofstream(partial_) << std::string(5000, 'x');
     const TrajectoryWriter writer(path_, make_header(3), make_steps(40), false);
