@@ -92,7 +92,8 @@ Preview::Sum& Preview::sum_at(int x, int y) {
 
 std::uint32_t Preview::steps_of(float value) const {
     const double v = gain_ * static_cast<double>(value);
-    return static_cast<std::uint32_t>(std::lround(kOne * std::clamp(v, 0.0, 1.0)));
+    // What is no number, as a damaged image may hold it, is black.
+    return v > 0 ? static_cast<std::uint32_t>(std::lround(kOne * std::min(v, 1.0))) : 0;
 }
 
 void Preview::add(int x, int y, float red, float green, float blue) {

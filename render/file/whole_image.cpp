@@ -24,11 +24,15 @@ constexpr std::uint32_t kTiled = 0x200, kDeep = 0x800, kSeveralParts = 0x1000;
 
 /// Skips the header's attributes (each a name, a type, a size and as many bytes; an empty name ends
 /// them).
-void skip_header(std::istream& in) {
+/// @return false: a size is none
+bool skip_header(std::istream& in) {
     for (std::string name, type; std::getline(in, name, '\0') && !name.empty();) {
         std::getline(in, type, '\0');
-        in.seekg(number<std::int32_t>(in), std::ios::cur);
+        const auto size = number<std::int32_t>(in);
+        if (!in || size < 0) return false;
+        in.seekg(size, std::ios::cur);
     }
+    return true;
 }
 
 }  // namespace
@@ -39,7 +43,7 @@ bool is_whole_image(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: not a readable OpenEXR image", file.string()));
     const auto version = number<std::uint32_t>(in);
     if ((version & (kDeep | kSeveralParts)) != 0) return true;
-    skip_header(in);
+    if (!skip_header(in)) return false;
     const auto begin = static_cast<std::uint64_t>(in.tellg());
     const std::uint64_t size = std::filesystem::file_size(file);
     if (!in) return false;

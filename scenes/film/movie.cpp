@@ -53,9 +53,9 @@ std::optional<int> frame_number(const std::string& file, const std::string& name
     const char* const last = file.data() + file.size() - end.size();
     int number = 0;
     const auto [at, error] = std::from_chars(first, last, number);
-    // Four digits at least, and no sign.
-    if (error != std::errc() || at != last || last - first < 4 || *first == '-')
-        return std::nullopt;
+    if (error != std::errc() || at != last || number < 0) return std::nullopt;
+    // Written as the program does: four digits at least, and no more zeros in front than they need.
+    if (fmt::format("{:04}", number) != std::string_view(first, last)) return std::nullopt;
     return number;
 }
 

@@ -130,8 +130,8 @@ struct NextTime {
 /// The direction as a unit vector. One that is unit to rounding stays as it is, so that what was
 /// made unit once is itself again when the canonical text is read.
 inline Vec4 unit_direction(const Vec4& direction) {
-    constexpr double kUnit = 16 * std::numeric_limits<double>::epsilon();
-    if (std::abs(direction.squaredNorm() - 1) <= kUnit) return direction;
+    constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+    if (std::abs(direction.squaredNorm() - 1) <= kRounding) return direction;
     return stable_normalized(direction);
 }
 

@@ -269,17 +269,17 @@ TEST_F(TrajectoryTest, RefusesASecondWriterAndAdmitsReaders) {
 
 TEST_F(TrajectoryTest, AFileThatIsOpenShowsWhatIsFlushedThen) {
     // A reader has seen the superblock, and of the rest nothing, when trees grow and split.
-    constexpr std::uint64_t kRows = 150;
-    TrajectoryWriter writer(path_, make_header(9), make_steps(kRows), false);
+    constexpr std::uint64_t kSplit = 150;
+    TrajectoryWriter writer(path_, make_header(9), make_steps(kSplit), false);
     append_rows(writer, 10, 9);
     writer.flush();
     const hdf5::Handle file = hdf5::open_file(partial_, false);
-    append_rows(writer, kRows, 9);
+    append_rows(writer, kSplit, 9);
     writer.flush();
     const hdf5::Handle positions =
         hdf5::open_dataset(file.get(), "/particles/bodies/position/value");
-    ASSERT_EQ(hdf5::extent_of(positions)[0], kRows);
-    for (std::uint64_t row = 0; row < kRows; ++row) {
+    ASSERT_EQ(hdf5::extent_of(positions)[0], kSplit);
+    for (std::uint64_t row = 0; row < kSplit; ++row) {
         std::vector<Vec4> read(9);
         ASSERT_NO_THROW(hdf5::read_rows(positions, row, 1, H5T_NATIVE_DOUBLE, read.data())) << row;
         EXPECT_EQ(read, make_row(row, 9).bodies.position) << row;
