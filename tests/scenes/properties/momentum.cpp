@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "tests/scenes/properties/properties.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 namespace {
 
 /// What acts on all bodies together in a step, but for blows of what contacts do not move.
@@ -149,4 +149,4 @@ std::string fault_of_momentum(const SmallScene& scene, const Change& defect) {
     return {};
 }
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

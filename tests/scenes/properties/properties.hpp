@@ -6,7 +6,7 @@
 
 // Properties that every scene has. Each function returns what is wrong with a scene, or an empty
 // text. A defect changes all motions of a scene alike: to see that a property is able to fail.
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 
 /// With lengths, times and masses so many times as large bodies move as many times as far and fast,
 /// bit for bit.
@@ -59,4 +59,4 @@ struct Agreement {
 Agreement agreement_of(const SmallScene& scene, const View& view, const Change& defect,
                        const std::function<bool(const Agreement&)>& ends);
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

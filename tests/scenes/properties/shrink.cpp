@@ -2,28 +2,28 @@
 
 #include "tests/scenes/properties/small_scene.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 namespace {
 
-using Change = std::function<void(SmallScene&)>;
+using Simpler = std::function<void(SmallScene&)>;
 
 /// Sets a number or vector to something plainer.
 template <class T>
-Change set(std::size_t body, T BodyTable::*member, const T& value) {
+Simpler set(std::size_t body, T BodyTable::*member, const T& value) {
     return [=](SmallScene& scene) { scene.tables[body].*member = value; };
 }
 template <class T>
-Change set_type(std::size_t body, T BodyType::*member, const T& value) {
+Simpler set_type(std::size_t body, T BodyType::*member, const T& value) {
     return [=](SmallScene& scene) { scene.tables[body].type.*member = value; };
 }
 template <class T>
-Change set_physics(T PhysicsSettings::*member, const T& value) {
+Simpler set_physics(T PhysicsSettings::*member, const T& value) {
     return [=](SmallScene& scene) { scene.physics.*member = value; };
 }
 
 /// What may be left out of a scene, what takes away most first.
-std::vector<Change> changes_of(const SmallScene& scene) {
-    std::vector<Change> changes;
+std::vector<Simpler> changes_of(const SmallScene& scene) {
+    std::vector<Simpler> changes;
     for (std::size_t i = 0; i < scene.tables.size(); ++i)
         changes.push_back([i](SmallScene& s) {
             s.tables.erase(s.tables.begin() + static_cast<std::ptrdiff_t>(i));
@@ -74,8 +74,8 @@ bool is_same(const SmallScene& a, const SmallScene& b) {
 SmallScene shrunk(SmallScene scene, const std::function<bool(const SmallScene&)>& has_fault) {
     for (bool smaller = true; smaller;) {
         smaller = false;
-        const std::vector<Change> changes = changes_of(scene);
-        for (const Change& change : changes) {
+        const std::vector<Simpler> changes = changes_of(scene);
+        for (const Simpler& change : changes) {
             SmallScene changed = scene;
             change(changed);
             if (changed.steps < 1 || changed.tables.empty() || is_same(changed, scene)) continue;
@@ -89,4 +89,4 @@ SmallScene shrunk(SmallScene scene, const std::function<bool(const SmallScene&)>
     return scene;
 }
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

@@ -6,7 +6,7 @@
 
 #include "tests/core/shape/oracle.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 namespace {
 
 /// Draws one scene. Lengths are parts of `size_`, times of a step, so that what happens in a few
@@ -279,4 +279,4 @@ std::size_t bounded_count(const SmallScene& scene) {
                       [](const BodyTable& table) { return is_bounded(table.shape); }));
 }
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

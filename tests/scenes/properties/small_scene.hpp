@@ -9,7 +9,7 @@
 #include "core/dynamics/state/settings.hpp"
 #include "scenes/load/body_keys.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 
 /// A scene of a few bodies as its file says it. Every body has a type of its own here.
 struct SmallScene {
@@ -39,4 +39,4 @@ std::size_t bounded_count(const SmallScene& scene);
 /// @param has_fault   of the scene given it is true
 SmallScene shrunk(SmallScene scene, const std::function<bool(const SmallScene&)>& has_fault);
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

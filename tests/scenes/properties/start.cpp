@@ -5,7 +5,7 @@
 
 #include "tests/core/shape/oracle.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 namespace {
 
 /// Planes that contain x turn round.
@@ -160,4 +160,4 @@ double difference(const Bodies& a, const Bodies& b, const Sizes& sizes) {
     return most;
 }
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties

@@ -9,7 +9,7 @@
 #include "core/dynamics/world.hpp"
 #include "tests/scenes/properties/small_scene.hpp"
 
-namespace tesserae::scenes::testing {
+namespace tesserae::scenes::properties {
 
 /// From where and how bodies move.
 struct Start {
@@ -75,4 +75,4 @@ Sizes sizes_of(const Start& start);
 /// distances of corresponding points of their bounding balls, and differences of their velocities.
 double difference(const Bodies& a, const Bodies& b, const Sizes& sizes);
 
-}  // namespace tesserae::scenes::testing
+}  // namespace tesserae::scenes::properties
