@@ -154,7 +154,7 @@ Change of_velocities(const std::function<void(Bodies&, BodyId)>& change) {
 
 TEST(Properties, SeeDefects) {
     // A length, time or mass of its own.
-    expect_seen(kLengths, of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] += 1e-15; }));
+    expect_seen(kLengths, of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] += 1e-12; }));
     expect_seen(kMasses, of_velocities([](Bodies& b, BodyId i) {
                     b.velocity[i] *= 1 - 1e-15 / (1 + b.type_of(i).mass);
                 }));
