@@ -202,7 +202,12 @@ Agreement agreement_of(const SmallScene& scene, const View& view, const Change& 
     const Sizes sizes = sizes_of(start);
     Motion here(start, defect), there(view.start, defect);
     std::vector<Motion> others;
-    for (int i = 0; i < kOthers; ++i) others.emplace_back(start, rounding(scene.seed + i, sizes));
+    for (int i = 0; i < kOthers; ++i)
+        others.emplace_back(
+            start, [&, also = rounding(scene.seed + i, sizes)](Bodies& bodies, int step) mutable {
+                if (defect) defect(bodies, step);
+                also(bodies, step);
+            });
     Agreement agreement;
     for (int i = 1; i <= scene.steps && is_gentle(here); ++i) {
         here.step();

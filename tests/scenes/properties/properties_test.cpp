@@ -138,10 +138,10 @@ TEST(MirroringSlow, ChangesNothing) {
 
 /// Some of the first scenes has a fault where the motion has a defect of a part in 10^3, or in
 /// bits.
-void expect_seen(const Property& property, const Change& defect) {
+void expect_seen(const char* name, const Property& property, const Change& defect) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed)
         if (!fault_of(property, properties::draw_small_scene(seed), defect).empty()) return;
-    ADD_FAILURE() << "no fault was seen";
+    ADD_FAILURE() << name << ": no fault was seen";
 }
 
 /// Changes the velocity of every bounded body that may be changed.
@@ -154,31 +154,33 @@ Change of_velocities(const std::function<void(Bodies&, BodyId)>& change) {
 
 TEST(Properties, SeeDefects) {
     // A length, time or mass of its own.
-    expect_seen(kLengths, of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] += 1e-12; }));
-    expect_seen(kMasses, of_velocities([](Bodies& b, BodyId i) {
-                    b.velocity[i] *= 1 - 1e-15 / (1 + b.type_of(i).mass);
+    expect_seen("a length", kLengths,
+                of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] += 1e-12; }));
+    expect_seen("a mass", kMasses, of_velocities([](Bodies& b, BodyId i) {
+                    b.velocity[i] *= 1 - 1e-12 / (1 + b.type_of(i).mass);
                 }));
-    expect_seen(properties::fault_of_slowing,
+    expect_seen("a time", properties::fault_of_slowing,
                 of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] += 1e-15; }));
     // What is not in the memory.
     int steps = 0;
-    expect_seen(properties::fault_of_parting, of_velocities([&](Bodies& b, BodyId i) {
-                    b.velocity[i] *= 1 - 1e-15 * (++steps % 7);
-                }));
+    expect_seen(
+        "what is not in the memory", properties::fault_of_parting,
+        of_velocities([&](Bodies& b, BodyId i) { b.velocity[i] *= 1 - 1e-15 * (++steps % 7); }));
     // What depends on a body's number.
-    expect_seen(properties::fault_of_numbering, of_velocities([](Bodies& b, BodyId i) {
+    expect_seen("a number", properties::fault_of_numbering, of_velocities([](Bodies& b, BodyId i) {
                     if (i % 2 == 0) b.velocity[i] *= 1 - 1e-15;
                 }));
     // A momentum from nowhere, linear and angular.
-    expect_seen(properties::fault_of_momentum,
+    expect_seen("a momentum", properties::fault_of_momentum,
                 of_velocities([](Bodies& b, BodyId i) { b.velocity[i] *= 1 - 1e-6; }));
-    expect_seen(properties::fault_of_momentum, of_velocities([](Bodies& b, BodyId i) {
+    expect_seen("an angular momentum", properties::fault_of_momentum,
+                of_velocities([](Bodies& b, BodyId i) {
                     b.angular_velocity[i] = (1 - 1e-6) * b.angular_velocity[i];
                 }));
     // A direction of its own.
-    expect_seen(properties::fault_of_turning,
+    expect_seen("a direction", properties::fault_of_turning,
                 of_velocities([](Bodies& b, BodyId i) { b.velocity[i][0] *= 1 - 1e-3; }));
-    expect_seen(properties::fault_of_mirroring, of_velocities([](Bodies& b, BodyId i) {
+    expect_seen("a side", properties::fault_of_mirroring, of_velocities([](Bodies& b, BodyId i) {
                     b.angular_velocity[i].xy *= b.angular_velocity[i].xy > 0 ? 1 - 1e-3 : 1;
                 }));
 }
