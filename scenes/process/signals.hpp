@@ -9,8 +9,8 @@ namespace tesserae::scenes {
 /// written yet, so nothing can be lost, however long loading takes.
 void handle_signals();
 
-/// From here on the first signal asks the work to stop where its files are whole; a second one, or a
-/// second without having stopped, ends the process at once: unfinished files keep their .partial
+/// From here on the first signal asks the work to stop where its files are whole; a second one, or
+/// a second without having stopped, ends the process at once: unfinished files keep their .partial
 /// names, with what was last flushed.
 void stop_gracefully_on_signals();
 

@@ -20,13 +20,13 @@
 // points to yet, or behind the extents.
 //
 // Another process that reads meanwhile looks at one place after another: at the superblock before a
-// flush, it may be, and at the structures behind it after. HDF5 refuses what lies behind the end that
-// the superblock told, and a superblock that tells an end behind the file's. So a growing file's
-// superblock tells an end that is further away, the file is longer still, and both are right once it
-// is closed: what is in between is a hole, which takes no place on the disk. A file of a killed
-// process keeps it. What remains: who has read a tree's node before a flush that splits one of its
-// children finds the rows that have moved from there to be zeros. Where the file's time has not
-// changed from before it was opened until all was read, all is as one flush left it.
+// flush, it may be, and at the structures behind it after. HDF5 refuses what lies behind the end
+// that the superblock told, and a superblock that tells an end behind the file's. So a growing
+// file's superblock tells an end that is further away, the file is longer still, and both are right
+// once it is closed: what is in between is a hole, which takes no place on the disk. A file of a
+// killed process keeps it. What remains: who has read a tree's node before a flush that splits one
+// of its children finds the rows that have moved from there to be zeros. Where the file's time has
+// not changed from before it was opened until all was read, all is as one flush left it.
 //
 // It relies on nothing being freed and used again between two flushes: whoever makes a dataset
 // shorter, or takes out links, closes the file before more is written. A group's names stay where

@@ -75,9 +75,9 @@ void recall_impulses(const Simulation& simulation, StepData& step, Range contact
     // As a pair: clang 14 lets no lambda have a structured binding.
     const auto [a, b] = step.contacts.pair(contacts.begin);
     const BodyPair first = {a, b};
-    auto old = std::partition_point(
-        last.runs().begin(), last.runs().end(),
-        [&](const KeptImpulses::Run& run) { return bodies_of(run) < first; });
+    auto old =
+        std::partition_point(last.runs().begin(), last.runs().end(),
+                             [&](const KeptImpulses::Run& run) { return bodies_of(run) < first; });
     for (std::size_t begin = contacts.begin; begin < contacts.end;) {
         const ContactList::Run run = step.contacts.run(begin, contacts.end);
         const BodyPair pair = {run.a, run.b};
