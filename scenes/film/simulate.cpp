@@ -51,18 +51,51 @@ StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& fou
     return facts;
 }
 
+/// The name that a body has, alone or with others of its lattice.
+const std::string& name_of_body(const Scene& scene, BodyId id) {
+    const auto after =
+        std::upper_bound(scene.names.begin(), scene.names.end(), id,
+                         [](BodyId body, const NamedBodies& named) { return body < named.first; });
+    return std::prev(after)->name;
+}
+
 /// One step; a body that leaves the finite range is reported by its name.
 StepReport checked_step(const Scene& scene, parallel::ParallelWorld& world) {
     try {
         return world.step(1.0 / scene.physics->steps_per_second);
     } catch (const LeftFiniteRange& error) {
-        const auto after = std::upper_bound(
-            scene.names.begin(), scene.names.end(), error.body,
-            [](BodyId body, const NamedBodies& named) { return body < named.first; });
         throw RunError(fmt::format("{} (body {} is of \"{}\")", error.what(), error.body,
-                                   std::prev(after)->name));
+                                   name_of_body(scene, error.body)));
     }
 }
+
+/// Says once, after a step that took long, which body makes it so: one that turns many times within
+/// a step, whose way is looked at in as many pieces.
+class SlowSteps {
+  public:
+    SlowSteps(const Scene& scene, bool quiet) : scene_(scene), told_(quiet) {}
+
+    void look_at(double seconds, const Bodies& bodies) {
+        constexpr double kLong = 0.5, kTurn = 6.283185307179586;  // [s], [rad]
+        if (told_ || seconds < kLong) return;
+        BodyId fastest = 0;
+        for (BodyId id = 0; id < bodies.size(); ++id)
+            if (norm(bodies.angular_velocity[id]) > norm(bodies.angular_velocity[fastest]))
+                fastest = id;
+        const double turns =
+            norm(bodies.angular_velocity[fastest]) / (kTurn * scene_.physics->steps_per_second);
+        if (!(turns > 1)) return;
+        told_ = true;
+        tell(
+            fmt::format("warning: a step took {}: \"{}\" turns {:.0f} times within it; with more "
+                        "steps_per_second a step takes less",
+                        duration_text(seconds), name_of_body(scene_, fastest), turns));
+    }
+
+  private:
+    const Scene& scene_;
+    bool told_;
+};
 
 /// Stores the rows that are missing. Every row holds a state and what the step that led to it
 /// found; the first, before any step, found nothing.
@@ -88,11 +121,17 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
 
     Progress progress("simulating", "steps", steps.back(), quiet);
     progress.start_at(step);
+    SlowSteps slow(scene, quiet);
     StepReport found;
     for (std::uint64_t row = writer.rows(); row < steps.size(); ++row) {
         for (; step < steps[row]; ++step) {
             if (stop_requested()) throw Stopped();
-            if (world) found = checked_step(scene, *world);
+            if (world) {
+                const auto begin = std::chrono::steady_clock::now();
+                found = checked_step(scene, *world);
+                const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+                slow.look_at(took.count(), bodies);
+            }
             progress.update(step + 1);
         }
         writer.append(facts_of(scene, step, found, bodies), bodies,
