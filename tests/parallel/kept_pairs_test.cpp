@@ -136,7 +136,7 @@ TEST(KeptPairs, ChangeNoBitOfFastBodies) {
 }
 
 /// A paddle that turns and a slab that moves at velocities of their own.
-TEST(KeptPairs, ChangeNoBitOfDrivenBodies) {
+TEST(KeptPairsSlow, ChangeNoBitOfDrivenBodies) {
     Bodies bodies = mixed_heap(60);
     BodyType slab = box_type({1, 1, 1, 1}), paddle = box_type({2, 0.3, 0.3, 0.5});
     slab.fixed_position = slab.fixed_rotation = true;

@@ -176,7 +176,7 @@ Struck strike(int boxes, double mass, double friction, double rolling, bool weig
 
 /// Loads that had stopped it were recalled where it went back already, or without a look at them
 /// where friction is above 1 or resists rolling: it came back at 60 to 70 % of its speed.
-TEST(Blow, OfAThousandMassesOnFlushBoxesDoesNotThrowItBack) {
+TEST(BlowSlow, OfAThousandMassesOnFlushBoxesDoesNotThrowItBack) {
     for (const auto [friction, rolling] :
          {std::array{0.5, 0.0}, {0.9, 0.0}, {1.2, 0.0}, {3.0, 0.0}, {0.9, 0.01}})
         for (const double mass : {100.0, 1000.0})
@@ -195,7 +195,7 @@ TEST(Blow, OfAThousandMassesOnFlushBoxesDoesNotThrowItBack) {
 
 /// Springs push apart what such a body has pressed together, and sweeps do not take all of that
 /// back: rows of nine flush boxes came back with four times the energy that they had been hit with.
-TEST(Blow, OnASoftRowAddsNoEnergy) {
+TEST(BlowSlow, OnASoftRowAddsNoEnergy) {
     std::mt19937_64 random(11);
     for (int trial = 0; trial < 60; ++trial) {
         const double size = std::exp(uniform(random, -3, 2.3)), e = uniform(random, 0, 1);

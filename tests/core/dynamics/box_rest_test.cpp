@@ -207,7 +207,7 @@ TEST(Stack, OfThinBoxesDroppedCrosswiseDoesNotMerge) {
 
 /// Piles of eight sheets that lean and are turned against each other, of which some turned into
 /// each other, one end after the other.
-TEST(Stack, OfSheetsThatFallAslantDoesNotMerge) {
+TEST(StackSlow, OfSheetsThatFallAslantDoesNotMerge) {
     const Vec4 size{0.1, 0.1, 1, 1};
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         std::mt19937_64 random(seed);

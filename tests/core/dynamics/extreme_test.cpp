@@ -170,7 +170,7 @@ TEST(Extreme, OverlapInANarrowWedgeIsPushedOut) {
 
 /// Between walls that leave them too little room: every step pressed them together more, until they
 /// burst apart at 0.5 to 44 m/s.
-TEST(Extreme, WhatCannotPartDoesNotBurstApart) {
+TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
     const double radius = 0.3;
     for (const double steps : {240.0, 960.0})
         for (const double overlap : {0.004, 0.01, 0.02}) {

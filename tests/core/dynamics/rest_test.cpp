@@ -173,7 +173,7 @@ TEST(Rest, OfSmallTowers) {
 }
 
 /// Each sweep leaves so little of how they sway that a tolerance of 1e-4 m/s was kept by 6 mm/s.
-TEST(Rest, OfTallTowersOfSmallCubes) {
+TEST(RestSlow, OfTallTowersOfSmallCubes) {
     for (const int height : {30, 40})
         for (const double side : {0.1, 0.2}) {
             Bodies bodies = on_floor();
@@ -230,7 +230,7 @@ TEST(Rest, OfAWallThatStartsWithGaps) {
 
 /// Its contacts are too many for more than 13 sweeps but for those further ones: without these it
 /// sways by 37 mm/s, and ever more.
-TEST(Rest, OfALongerWallThatStartsWithGaps) {
+TEST(RestSlow, OfALongerWallThatStartsWithGaps) {
     World world(wall_with_gaps(16, 0.1, 1e-4), PhysicsSettings{});
     run(world, 480);
     EXPECT_LT(fastest_of(world), 1e-3);
@@ -329,7 +329,7 @@ TEST(Rest, OfAPyramid) {
 /// Twelve logs, 5, 4 and 3, between walls with some slack: where they lie on each other a hair
 /// aslant both ends of what they share must carry. With more slack they roll off each other first,
 /// more slowly the better their loads are solved.
-TEST(Rest, OfAPileOfLogsBetweenWalls) {
+TEST(RestSlow, OfAPileOfLogsBetweenWalls) {
     constexpr double kRadius = 0.3;
     for (const double slack : {1e-3, 0.01, 0.03}) {
         Bodies bodies;

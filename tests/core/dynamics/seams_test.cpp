@@ -258,7 +258,7 @@ TEST(Seams, OfTilesSunkInAPlaneAreCrossedAsOnePlane) {
 
 /// Tiles that are put down side by side on a plane, and stay flush to some 1e-6 m. Where sliding
 /// friction turns a capsule depends on which of them carries it, and is not looked at.
-TEST(Seams, OfLooseTilesAreCrossedAsOnePlane) {
+TEST(SeamsSlow, OfLooseTilesAreCrossedAsOnePlane) {
     for (const PhysicsSettings& settings : impulse_and_soft())
         for (const Kind kind : {Kind::kBox, Kind::kBall, Kind::kCapsule}) {
             Ride ride = random_ride(kind, 0, 7 * static_cast<unsigned>(kind));
@@ -317,7 +317,7 @@ TEST(Seams, AStepOfAMillimetreIsNone) {
 
 /// A box that slides along a wall of flush boxes whose lower edges lie in the floor, or beside it.
 /// It has sunk into the floor by a hair, and leans against the wall by another.
-TEST(Seams, OfAWallOnAFloorAreNone) {
+TEST(SeamsSlow, OfAWallOnAFloorAreNone) {
     for (const PhysicsSettings& settings : impulse_and_soft())
         for (std::uint64_t seed = 0; seed < 60; ++seed) {
             Draw draw{std::mt19937_64(seed)};

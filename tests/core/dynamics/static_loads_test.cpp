@@ -81,7 +81,7 @@ TEST(StaticLoads, HoldTowersThatStartWithGaps) {
 }
 
 /// Of 24 such piles 4 fell, after up to 14 s; the first two of these did.
-TEST(StaticLoads, HoldPilesOfSmallBoards) {
+TEST(StaticLoadsSlow, HoldPilesOfSmallBoards) {
     for (const unsigned seed : {13u, 18u, 3u, 7u}) {
         const double s = 0.0105 + 0.0001 * (seed % 20);
         const Pile pile = {

@@ -53,7 +53,7 @@ TEST(Interrupt, SignalsGiveTheirStatusAndTheSameCommandFinishes) {
 
 TEST(Interrupt, KillsLoseNothing) {
     const Folder folder("kills");
-    const auto scene = folder.write("drop.toml", small_scene(2));
+    const auto scene = folder.write("drop.toml", small_scene(1));
     const auto command = [&](const char* out) {
         return std::vector<std::string>{"run", scene, "-o", folder.file(out), "--size", "160x120"};
     };
