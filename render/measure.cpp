@@ -127,7 +127,7 @@ FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seco
     std::vector<TileImage> images(8 * threads);
     std::vector<PackedTile> packed(images.size());
     std::vector<double> rendering(images.size()), packing(images.size());
-    double spent = 0;
+    double spent = 0, sum_of_costs = 0, sum_of_squares = 0;
     while (cost.rendered < tiles.size() && (cost.rendered == 0 || spent < seconds)) {
         // The first ones show how many the time is enough for.
         const double waves = cost.rendered == 0
@@ -150,6 +150,10 @@ FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seco
         };
         const double work = sum(rendering) + sum(packing);
         const double share = work > 0 ? sum(rendering) / work : 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double tile = rendering[i] * less.times + packing[i];
+            sum_of_costs += tile, sum_of_squares += tile * tile;
+        }
         spent += lap;
         cost.tiles += lap * (1 + share * (less.times - 1));
         for (std::size_t i = 0; i < count; ++i) {
@@ -161,6 +165,9 @@ FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seco
         cost.tiles += watch.lap() / static_cast<double>(threads);
         cost.rendered += count;
     }
+    const double mean = sum_of_costs / static_cast<double>(cost.rendered);
+    const double variance = sum_of_squares / static_cast<double>(cost.rendered) - mean * mean;
+    if (mean > 0) cost.spread = std::sqrt(std::max(0.0, variance)) / mean;
     cost.bytes *= static_cast<double>(cost.all) / static_cast<double>(cost.rendered);
     small.write(folder / "measured.png");
     fs::remove(folder / "measured.png");

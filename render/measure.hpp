@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 
 #include "render/picture.hpp"
@@ -14,9 +15,15 @@ struct FrameCost {
     double after = 0;                   ///< the preview and what a file costs beside its tiles [s]
     double bytes = 0;                   ///< of the image, all tiles
     std::size_t rendered = 0, all = 0;  ///< tiles
+    double spread = 0;  ///< standard deviation of a tile's cost, as a part of its mean
 
     double seconds() const {
         return before + after + tiles * static_cast<double>(all) / static_cast<double>(rendered);
+    }
+    /// Standard error of seconds(), from how unlike each other the tiles were [s].
+    double error() const {
+        const auto count = static_cast<double>(rendered), whole = static_cast<double>(all);
+        return spread * std::sqrt((1 - count / whole) / count) * tiles * whole / count;
     }
 };
 

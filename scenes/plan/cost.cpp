@@ -113,7 +113,9 @@ void measure_rendering(const Scene& scene, const Plan& plan, const std::vector<T
             (near != seen.begin() && time - std::prev(near)->first < near->first - time))
             --near;
         bytes += near->second.bytes;
-        if (!alike || frame == frames.front()) cost.render_seconds += near->second.seconds();
+        if (alike && frame != frames.front()) continue;
+        cost.render_seconds += near->second.seconds();
+        cost.render_error += near->second.error();
     }
     cost.frame_bytes = static_cast<std::uint64_t>(bytes);
     cost.measured.push_back(fmt::format("{} of {} tiles of {} frames", rendered, all, seen.size()));

@@ -13,12 +13,15 @@ namespace tesserae::scenes {
 struct Cost {
     double simulate_seconds = 0;
     double render_seconds = 0;
+    double render_error = 0;            ///< standard error of it [s]
     std::uint64_t frame_bytes = 0;      ///< images and previews
     std::vector<std::string> measured;  ///< what was done of it, a line each
     std::vector<std::string> guessed;   ///< what could not be seen
 
-    /// Whether the times may be wrong by more than a factor of two.
-    bool is_rough() const { return !guessed.empty(); }
+    /// Whether the times may be wrong by more than a factor of two: something could not be seen, or
+    /// the tiles that were rendered are so unlike each other that two standard errors are half of
+    /// the time.
+    bool is_rough() const { return !guessed.empty() || 4 * render_error > render_seconds; }
 };
 
 /// How long a plan measures [s]: half a second in all for a few bodies, some for many, whose first
