@@ -45,7 +45,7 @@ inline void randomize(Random& random, Hyperplane& s) {
 /// Every other shape: each size anew.
 template <class S>
 void randomize(Random& random, S& shape) {
-    S::parameters(shape, [&](const char*, auto& value, Rule rule) {
+    S::parameters(shape, [&](const Key&, auto& value, Rule rule) {
         if constexpr (requires { value *= 1.0; })
             if (rule == Rule::kPositive) value *= 0.5 * random_size(random);
     });

@@ -328,7 +328,8 @@ void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
 
 /// By counting each body's pairs, and then each body's by their second.
 void SortAndSweep::sort_pairs(std::size_t bodies, PairTable& sorted) {
-    auto& [first, second] = sorted;
+    auto& first = sorted.first;
+    auto& second = sorted.second;
     resize_anew(second, found_.size());
     counting_sort(
         found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first,

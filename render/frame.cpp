@@ -101,7 +101,7 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const FrameScene scene(picture, channels.color || channels.light || !preview.empty());
     ExrWriter image(exr, settings, window, info, picture.camera, scene.camera(), picture.mattes);
     std::optional<Preview> small;
-    if (!preview.empty()) small.emplace(window, settings.exposure);
+    if (!preview.empty()) small.emplace(window, settings.exposure, settings.sky);
     FrameStats stats;
     render_tiles(
         scene, window, settings.tile, {0, SIZE_MAX}, stop,
@@ -125,12 +125,12 @@ std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& i
     const Crop window = settings.window();
     const Camera camera(picture.camera, settings.width, settings.height);
     TilePacker packer(settings, window, info, picture.camera, camera, picture.mattes);
-    const PartInfo about = {part, window, packer.tiles(), packer.file_header()};
+    const PartInfo about = {part, window, settings.sky, packer.tiles(), packer.file_header()};
     if (is_part_done(about, file, overwrite)) return {};
 
     const FrameScene scene(picture, true);
     PartWriter out(file, about);
-    Preview small(window, settings.exposure);
+    Preview small(window, settings.exposure, settings.sky);
     FrameStats stats;
     const auto cut = [&](int number) {
         return static_cast<std::uint64_t>(number) * about.tiles /

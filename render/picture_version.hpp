@@ -11,6 +11,7 @@ namespace tesserae::render {
 /// pixel lose nothing; a camera may stand in glass; of overlapping glass the last body rules.
 /// 4: every sample has a time of its own while the shutter is open; paths take directions by
 /// functions of our own in place of the C library's, so their noise is another.
-constexpr int kPictureVersion = 4;
+/// 5: glass whose material gives no albedo takes no light.
+constexpr int kPictureVersion = 5;
 
 }  // namespace tesserae::render

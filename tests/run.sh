@@ -33,7 +33,7 @@ case "${1:-}" in
     test_build release fast -DCMAKE_BUILD_TYPE=Release
     ;;
 --slow)
-    install_packages "${packages[@]}"
+    install_packages "${packages[@]}" python3 python3-h5py
     test_build release "fast|slow" -DCMAKE_BUILD_TYPE=Release
     ;;
 --all)

@@ -115,7 +115,8 @@ Bivector log(const Rotor& r) {
 }
 
 Rotor projected_to_spin4(const Rotor& r) {
-    // Normalising both quaternions is R <- (u + v I)^-1 R of FORMULAS 1, without its cancellations.
+    // Normalising both quaternions is R <- (u + v I)^-1 R of core/FORMULAS.md 1, without its
+    // cancellations.
     const QuaternionPair q = to_pair(r);
     return from_pair({normalized(q.plus), normalized(q.minus)});
 }

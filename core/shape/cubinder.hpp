@@ -17,8 +17,10 @@ struct Cubinder : BallProduct {
     }
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("radius", self.radius, Rule::kPositive);
-        visit("size", self.size, Rule::kPositive);
+        visit({"radius", "m", "The disc in x and y has this radius."}, self.radius,
+              Rule::kPositive);
+        visit({"size", "m", "The rectangle in z and w has these full sides."}, self.size,
+              Rule::kPositive);
     }
 };
 

@@ -16,7 +16,9 @@ struct Duocylinder : BallProduct {
     }
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("radii", self.radii, Rule::kPositive);
+        visit({"radii", "m",
+               "The disc in x and y has the first radius, the disc in z and w the second."},
+              self.radii, Rule::kPositive);
     }
 };
 

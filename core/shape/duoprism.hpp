@@ -22,8 +22,12 @@ struct Duoprism : HullShape {
     }
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("polygons", self.polygons, Rule::kSides);
-        visit("radii", self.radii, Rule::kPositive);
+        visit({"polygons", "",
+               "The polygon in x and y has the first number of sides and a corner on +x; the one "
+               "in z and w has the second and a corner on +z."},
+              self.polygons, Rule::kSides);
+        visit({"radii", "m", "The corners of the two polygons are this far from their centres."},
+              self.radii, Rule::kPositive);
     }
 };
 

@@ -14,7 +14,8 @@ struct Hyperbox {
     friend bool operator==(const Hyperbox&, const Hyperbox&) = default;
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("size", self.size, Rule::kPositive);
+        visit({"size", "m", "The box has these full sides along x, y, z and w."}, self.size,
+              Rule::kPositive);
     }
 };
 

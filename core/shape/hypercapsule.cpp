@@ -31,8 +31,8 @@ double volume(const Hypercapsule& shape) {
     return shape.height * (4.0 / 3.0 * M_PI) * r * r * r + volume(Hypersphere{r});
 }
 
-/// FORMULAS 2: the two parts' own moments, and the caps' shift along the axis. The centre of a half
-/// hypersphere lies 16 R / (15 pi) from its flat side.
+/// core/FORMULAS.md 2: the two parts' own moments, and the caps' shift along the axis. The centre
+/// of a half hypersphere lies 16 R / (15 pi) from its flat side.
 Vec4 second_moments(const Hypercapsule& shape, double mass) {
     const double r = shape.radius, h = shape.height;
     const double parts = 8 * h + 3 * M_PI * r;

@@ -15,8 +15,12 @@ struct Hypercapsule {
     friend bool operator==(const Hypercapsule&, const Hypercapsule&) = default;
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("radius", self.radius, Rule::kPositive);
-        visit("height", self.height, Rule::kNonNegative);
+        visit({"radius", "m", "The surface is this far from the core."}, self.radius,
+              Rule::kPositive);
+        visit({"height", "m",
+               "The core is a segment of this length along y; the whole capsule is longer by twice "
+               "the radius."},
+              self.height, Rule::kNonNegative);
     }
 };
 

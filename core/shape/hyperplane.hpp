@@ -16,8 +16,13 @@ struct Hyperplane {
     friend bool operator==(const Hyperplane&, const Hyperplane&) = default;
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("normal", self.normal, Rule::kNonZero);
-        visit("offset", self.offset, Rule::kFinite);
+        visit(
+            {"normal", "",
+             "The side that it points to is free, the other is solid; its length does not matter."},
+            self.normal, Rule::kNonZero);
+        visit({"offset", "m",
+               "The plane is at the points p with normal . p = offset, for a normal of length 1."},
+              self.offset, Rule::kFinite);
     }
 };
 

@@ -14,7 +14,8 @@ struct Hypersphere {
     friend bool operator==(const Hypersphere&, const Hypersphere&) = default;
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("radius", self.radius, Rule::kPositive);
+        visit({"radius", "m", "The surface is this far from the centre."}, self.radius,
+              Rule::kPositive);
     }
 };
 

@@ -6,7 +6,7 @@
 
 namespace tesserae {
 
-/// Which regular polychoron; its vertices stand as FORMATS.md says.
+/// Which regular polychoron; its vertices stand as scenes/FORMATS.md says.
 enum class RegularPolychoron { kNone, k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell };
 
 /// The convex hull of points, about its centre of mass.
@@ -25,10 +25,16 @@ struct Polychoron : HullShape {
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
         if (self.regular == RegularPolychoron::kNone) {
-            visit("vertices", self.vertices, Rule::kFinite);
+            visit({"vertices", "m",
+                   "The body is the convex hull of these points, about its centre of mass; at "
+                   "least five, not all in one flat space."},
+                  self.vertices, Rule::kFinite);
         } else {
-            visit("regular", self.regular, Rule::kFinite);
-            visit("radius", self.radius, Rule::kPositive);
+            visit({"regular", "",
+                   "The body is this regular polychoron; it stands instead of vertices."},
+                  self.regular, Rule::kFinite);
+            visit({"radius", "m", "The vertices of a regular one are this far from its centre."},
+                  self.radius, Rule::kPositive);
         }
     }
 };

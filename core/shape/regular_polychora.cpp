@@ -5,7 +5,8 @@
 
 #include "core/shape/polychoron.hpp"
 
-// Coordinates: Coxeter, Regular Polytopes (1973), sections 8.2 to 8.7; as FORMATS.md orders them.
+// Coordinates: Coxeter, Regular Polytopes (1973), sections 8.2 to 8.7; as scenes/FORMATS.md orders
+// them.
 namespace tesserae {
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include "core/algebra/rotor.hpp"
 #include "core/algebra/vector.hpp"
+#include "core/key.hpp"
 
 namespace tesserae {
 
@@ -37,8 +38,8 @@ struct RimRange {
 /// The angle between a ray and the nearest direction that touches a shape from the ray's start, by
 /// its sine: negative where the ray enters the shape. It is the least f(t)/t over 0 < t <= limit,
 /// f(t) being the signed distance along the ray, and exact for every convex shape that the ray
-/// misses (FORMULAS 7): 1 where the shape lies behind, -1 from inside it, and from its surface the
-/// tangent half-space's, f'(0).
+/// misses (core/FORMULAS.md 7): 1 where the shape lies behind, -1 from inside it, and from its
+/// surface the tangent half-space's, f'(0).
 struct Rim {
     double sine;    ///< at most low, at least high, or the right one: see kRimAccuracy
     int steps = 0;  ///< distances that were taken on the way; 0 in closed form
@@ -67,7 +68,7 @@ struct Face {
 /// Accepts what S::parameters hands out.
 struct AnyParameter {
     template <class T>
-    void operator()(const char* key, T& member, Rule rule) const;
+    void operator()(const Key& key, T& member, Rule rule) const;
 };
 
 /// What every shape's room provides, for a shape S in its own body frame (a hyperplane: in the

@@ -17,8 +17,9 @@ struct Spherinder : BallProduct {
     }
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("radius", self.radius, Rule::kPositive);
-        visit("height", self.height, Rule::kPositive);
+        visit({"radius", "m", "The ball in x, z and w has this radius."}, self.radius,
+              Rule::kPositive);
+        visit({"height", "m", "The body is this long along y."}, self.height, Rule::kPositive);
     }
 };
 

@@ -22,7 +22,7 @@ namespace {
 /// bytes and the bytes; an index of kNoMore; the preview's sums, all of them the part has touched
 /// in runs of first, count, sums; kNoMore; the checksum of all bytes before it. Numbers are
 /// little-endian.
-constexpr std::array<char, 16> kMagic = {"tesserae tiles2"};
+constexpr std::array<char, 16> kMagic = {"tesserae tiles3"};
 constexpr std::uint64_t kNoMore = ~std::uint64_t{0};
 /// As Settings allow it.
 constexpr int kMostPixels = 65536;
@@ -30,6 +30,7 @@ constexpr int kMostPixels = 65536;
 struct PartHeader {
     std::int32_t number = 0, count = 0;
     std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    std::int32_t sky = 0, unused = 0;
     std::uint64_t tiles = 0;  ///< of the whole frame
     std::uint64_t header_bytes = 0;
 };
@@ -67,12 +68,13 @@ class PartReader {
         const auto head = get<PartHeader>();
         info.part = {head.number, head.count};
         info.window = {head.x0, head.y0, head.x1, head.y1};
+        info.sky = head.sky == 0 ? Sky::kOpaque : Sky::kTransparent;
         info.tiles = head.tiles;
         info.exr_header = bytes<std::string>(head.header_bytes);
         const bool is_window = 0 <= head.x0 && head.x0 < head.x1 && head.x1 <= kMostPixels &&
                                0 <= head.y0 && head.y0 < head.y1 && head.y1 <= kMostPixels;
-        if (head.number < 1 || head.number > head.count || !is_window ||
-            head.tiles > head.header_bytes / sizeof(std::uint64_t))
+        if (head.number < 1 || head.number > head.count || !is_window || head.sky < 0 ||
+            head.sky > 1 || head.tiles > head.header_bytes / sizeof(std::uint64_t))
             bad("its numbers make no sense");
     }
 
@@ -193,8 +195,8 @@ PartWriter::PartWriter(const std::filesystem::path& path, const PartInfo& info)
     : file_(std::make_unique<File>(path)) {
     const Crop& w = info.window;
     file_->put(kMagic);
-    file_->put(PartHeader{info.part.number, info.part.count, w.x0, w.y0, w.x1, w.y1, info.tiles,
-                          info.exr_header.size()});
+    file_->put(PartHeader{info.part.number, info.part.count, w.x0, w.y0, w.x1, w.y1,
+                          info.sky == Sky::kOpaque ? 0 : 1, 0, info.tiles, info.exr_header.size()});
     file_->put_bytes(info.exr_header.data(), info.exr_header.size());
 }
 
@@ -250,7 +252,7 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
                 const std::filesystem::path& preview) {
     const PartInfo first = read_part_info(parts.front());
     JoinedImage image(exr, first);
-    Preview small(first.window, 0);
+    Preview small(first.window, 0, first.sky);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         PartReader part(parts[i]);
         if (!part.info.goes_with(first) || part.info.part.number != static_cast<int>(i) + 1 ||

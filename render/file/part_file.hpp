@@ -17,6 +17,7 @@ namespace tesserae::render {
 struct PartInfo {
     FramePart part;
     Crop window;
+    Sky sky = Sky::kOpaque;   ///< of the preview
     std::uint64_t tiles = 0;  ///< of the whole frame
     std::string exr_header;  ///< with an empty table of tiles: the frame's scene, number and camera
 

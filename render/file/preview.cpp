@@ -20,6 +20,11 @@ constexpr int kMaxWidth = 1920, kMaxHeight = 4096;
 /// still fits in 32 bits.
 constexpr double kOne = 1 << 20;
 
+/// Steps of a linear value. What is no number, as a damaged image may hold it, is black.
+std::uint32_t steps_of(double value) {
+    return value > 0 ? static_cast<std::uint32_t>(std::lround(kOne * std::min(value, 1.0))) : 0;
+}
+
 /// sRGB code of a linear value in [0, 1] (IEC 61966-2-1).
 std::uint8_t srgb_code(double v) {
     const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
@@ -56,27 +61,30 @@ void on_flush(png_structp) {}
 
 /// All calls that can jump back here. Nothing in this frame has a destructor, and nothing that
 /// changes after setjmp is read after a jump.
-bool encode(png_structp png, png_infop info, PngTarget* target, int width, int height,
-            const std::uint8_t* rgb) {
+bool encode(png_structp png, png_infop info, PngTarget* target, int width, int height, int channels,
+            const std::uint8_t* pixels) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_write_fn(png, target, on_bytes, on_flush);
     // A seventh larger than by default, in a third of the time.
     png_set_compression_level(png, 2);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+                 channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     for (int y = 0; y < height; ++y)
-        png_write_row(png, rgb + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 3);
+        png_write_row(png, pixels + static_cast<std::size_t>(y) * static_cast<std::size_t>(width) *
+                                        static_cast<std::size_t>(channels));
     png_write_end(png, info);
     return true;
 }
 
 }  // namespace
 
-Preview::Preview(const Crop& window, double exposure)
-    : window_(window), gain_(std::min(std::exp2(exposure), std::numeric_limits<double>::max())) {
+Preview::Preview(const Crop& window, double exposure, Sky sky)
+    : window_(window),
+      gain_(std::min(std::exp2(exposure), std::numeric_limits<double>::max())),
+      sky_(sky) {
     const int w = window.x1 - window.x0, h = window.y1 - window.y0;
     factor_ = std::max((w + kMaxWidth - 1) / kMaxWidth, (h + kMaxHeight - 1) / kMaxHeight);
     width_ = (w + factor_ - 1) / factor_;
@@ -90,34 +98,31 @@ Preview::Sum& Preview::sum_at(int x, int y) {
     return sums_[row * static_cast<std::size_t>(width_) + column];
 }
 
-std::uint32_t Preview::steps_of(float value) const {
-    const double v = gain_ * static_cast<double>(value);
-    // What is no number, as a damaged image may hold it, is black.
-    return v > 0 ? static_cast<std::uint32_t>(std::lround(kOne * std::min(v, 1.0))) : 0;
-}
-
-void Preview::add(int x, int y, float red, float green, float blue) {
+void Preview::add(int x, int y, float red, float green, float blue, float coverage) {
     Sum& sum = sum_at(x, y);
-    sum[0] += steps_of(red), sum[1] += steps_of(green), sum[2] += steps_of(blue);
+    sum[0] += steps_of(gain_ * red), sum[1] += steps_of(gain_ * green);
+    sum[2] += steps_of(gain_ * blue);
+    if (sky_ == Sky::kTransparent) sum[3] += steps_of(coverage);
 }
 
 void Preview::add(const TileImage& tile) {
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x) {
             const Pixel& pixel = tile.at(x, y);
-            add(x, y, pixel.color[0], pixel.color[1], pixel.color[2]);
+            add(x, y, pixel.color[0], pixel.color[1], pixel.color[2], pixel.alpha);
         }
 }
 
 bool Preview::add_sums(std::uint64_t first, std::span<const Sum> sums) {
     if (first > sums_.size() || sums.size() > sums_.size() - first) return false;
     for (std::size_t i = 0; i < sums.size(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) sums_[first + i][c] += sums[i][c];
+        for (std::size_t c = 0; c < 4; ++c) sums_[first + i][c] += sums[i][c];
     return true;
 }
 
 std::vector<std::uint8_t> Preview::codes() const {
-    std::vector<std::uint8_t> rgb(3 * sums_.size());
+    const auto channels = static_cast<std::size_t>(this->channels());
+    std::vector<std::uint8_t> pixels(channels * sums_.size());
     const int w = window_.x1 - window_.x0, h = window_.y1 - window_.y0;
     tbb::parallel_for(0, height_, [&](int y) {
         for (int x = 0; x < width_; ++x) {
@@ -125,20 +130,28 @@ std::vector<std::uint8_t> Preview::codes() const {
             const int rows = std::min(factor_, h - y * factor_);
             const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                                    static_cast<std::size_t>(x);
+            const double all = kOne * columns * rows, covered = sums_[at][3];
+            // Where nothing is the colour is black, whatever a lamp's disc has left there.
+            const double whole = channels == 3 ? all : covered;
             for (std::size_t i = 0; i < 3; ++i)
-                rgb[3 * at + i] = srgb_code(sums_[at][i] / (kOne * columns * rows));
+                pixels[channels * at + i] =
+                    whole > 0 ? srgb_code(std::min(sums_[at][i] / whole, 1.0)) : 0;
+            if (channels == 4)
+                pixels[channels * at + 3] =
+                    static_cast<std::uint8_t>(std::lround(255 * covered / all));
         }
     });
-    return rgb;
+    return pixels;
 }
 
 void Preview::write(const std::filesystem::path& path) const {
-    const std::vector<std::uint8_t> rgb = codes();
+    const std::vector<std::uint8_t> pixels = codes();
     FileWriter writer(path);
     PngTarget target = {&writer, nullptr};
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &target, on_error, on_warning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
-    const bool done = info && encode(png, info, &target, width_, height_, rgb.data());
+    const bool done =
+        info && encode(png, info, &target, width_, height_, channels(), pixels.data());
     png_destroy_write_struct(&png, &info);
     if (target.failure) std::rethrow_exception(target.failure);
     if (!done)

@@ -72,20 +72,20 @@ std::string damage_of_png(const std::filesystem::path& file) {
     return damage.empty() ? "" : fmt::format("{}: {}", file.string(), damage);
 }
 
-bool remake_preview(const std::filesystem::path& exr, double exposure,
+bool remake_preview(const std::filesystem::path& exr, double exposure, Sky sky,
                     const std::filesystem::path& preview) {
     const ImagePixels image(exr);
     const std::vector<ImageChannel>& channels = image.channels();
-    std::array<std::size_t, 3> places;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto found =
-            std::find_if(channels.begin(), channels.end(),
-                         [&](const ImageChannel& c) { return c.name == std::string(1, "RGB"[i]); });
+    std::array<std::size_t, 4> places;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto found = std::find_if(
+            channels.begin(), channels.end(),
+            [&](const ImageChannel& c) { return c.name == std::string(1, "RGBA"[i]); });
         if (found == channels.end()) return false;
         places[i] = static_cast<std::size_t>(found - channels.begin());
     }
     const Crop& window = image.window();
-    Preview small(window, exposure);
+    Preview small(window, exposure, sky);
     image.for_each_block([&](int y0, int y1, const PixelPlanes& planes) {
         std::size_t pixel = 0;
         const auto value = [&](std::size_t i) {
@@ -93,7 +93,7 @@ bool remake_preview(const std::filesystem::path& exr, double exposure,
         };
         for (int y = y0; y < y1; ++y)
             for (int x = window.x0; x < window.x1; ++x, ++pixel)
-                small.add(x, y, value(0), value(1), value(2));
+                small.add(x, y, value(0), value(1), value(2), value(3));
     });
     small.write(preview);
     return true;

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "render/description.hpp"
+
 // Previews that lie beside their images.
 namespace tesserae::render {
 
@@ -12,9 +14,10 @@ std::string damage_of_png(const std::filesystem::path& file);
 
 /// Makes the preview of an image from the image, with the bytes that rendering it gave.
 /// @param exposure   [stops]
+/// @param sky        as the image was made
 /// @return false: the image holds no colour
 /// @throws InputError   the image cannot be read; RunError: the preview cannot be written
-bool remake_preview(const std::filesystem::path& exr, double exposure,
+bool remake_preview(const std::filesystem::path& exr, double exposure, Sky sky,
                     const std::filesystem::path& preview);
 
 }  // namespace tesserae::render

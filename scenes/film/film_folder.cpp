@@ -60,6 +60,14 @@ void create_folder(const fs::path& folder) {
         throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
+void create_folder_of(const fs::path& file) {
+    std::error_code error;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+    if (error)
+        throw RunError(
+            fmt::format("{}: its folder cannot be made: {}", file.string(), error.message()));
+}
+
 std::string require_folder_of(const Scene& scene, const fs::path& folder, Replace replace) {
     const fs::path file = folder / kSceneFile;
     if (replace == Replace::kAll || !fs::exists(file)) return {};
@@ -152,7 +160,9 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
 
 bool mend_preview(const Scene& scene, const render::FrameFiles& files, const std::string& reason) {
     try {
-        if (!render::remake_preview(files.exr, scene.render.exposure, files.preview)) return false;
+        if (!render::remake_preview(files.exr, scene.render.exposure, scene.render.sky,
+                                    files.preview))
+            return false;
     } catch (const InputError& error) {
         // The image's pixels are damaged too, which its header does not show.
         tell(error.what());

@@ -37,6 +37,10 @@ std::string read_file(const std::filesystem::path& file);
 /// @throws RunError   with the path and the system's reason
 void create_folder(const std::filesystem::path& folder);
 
+/// Makes the folder that a file will be in.
+/// @throws RunError   with the file and the system's reason
+void create_folder_of(const std::filesystem::path& file);
+
 /// The hash of what a frame shows: of all of the scene but its duration, where that is not seen, as
 /// it is in the last frame with an open shutter or vectors of motion.
 std::string hash_of_frame(const Scene& scene, int frame, int picture_version, int motion_version);

@@ -101,14 +101,16 @@ void require_frame_of(const Scene& scene, const fs::path& file, int frame) {
                         file.string(), kSceneFile));
 }
 
-/// The numbers of the files in a folder, ascending.
-std::vector<int> numbers_in(const fs::path& folder, const std::string& name, std::string_view end) {
+/// The numbers of a scene's files in a folder, ascending. Frames beyond a duration that has become
+/// shorter are no part of the film.
+std::vector<int> numbers_in(const fs::path& folder, const Scene& scene, std::string_view end) {
     std::vector<int> numbers;
     std::error_code error;
     fs::directory_iterator at(folder, error);
     if (error == std::errc::no_such_file_or_directory) return numbers;
     for (; !error && at != fs::directory_iterator(); at.increment(error))
-        if (const auto number = frame_number(at->path().filename().string(), name, end))
+        if (const auto number = frame_number(at->path().filename().string(), scene.name, end);
+            number && has_frame(scene, *number))
             numbers.push_back(*number);
     if (error)
         throw RunError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
@@ -119,7 +121,7 @@ std::vector<int> numbers_in(const fs::path& folder, const std::string& name, std
 /// Makes previews that are missing or damaged from their images.
 void mend_previews(const Scene& scene, const fs::path& folder) {
     std::vector<int> numbers;
-    std::ranges::set_union(numbers_in(folder / "frames", scene.name, ".exr"),
+    std::ranges::set_union(numbers_in(folder / "frames", scene, ".exr"),
                            preview_numbers(scene, folder), std::back_inserter(numbers));
     for (const int number : numbers) {
         const render::FrameFiles files = {image_file(scene, folder, number),
@@ -258,7 +260,10 @@ class Child {
 constexpr const char* kFilter =
     "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
 
-std::vector<std::string> ffmpeg_words(double frames_per_second) {
+/// Previews of a transparent sky, over black.
+constexpr const char* kOverBlack = "format=gbrap,premultiply=inplace=1,";
+
+std::vector<std::string> ffmpeg_words(double frames_per_second, render::Sky sky) {
     return {"ffmpeg",
             "-hide_banner",
             "-loglevel",
@@ -274,7 +279,7 @@ std::vector<std::string> ffmpeg_words(double frames_per_second) {
             "-i",
             "pipe:0",
             "-vf",
-            kFilter,
+            (sky == render::Sky::kTransparent ? kOverBlack : "") + std::string(kFilter),
             "-c:v",
             "libx264",
             "-crf",
@@ -295,7 +300,7 @@ std::vector<std::string> ffmpeg_words(double frames_per_second) {
 }  // namespace
 
 std::vector<int> preview_numbers(const Scene& scene, const fs::path& folder) {
-    return numbers_in(folder / "preview", scene.name, ".png");
+    return numbers_in(folder / "preview", scene, ".png");
 }
 
 fs::path movie_file(const Scene& scene, const fs::path& folder) {
@@ -343,7 +348,7 @@ MovieReport make_movie(const Scene& scene, const fs::path& folder, bool quiet) {
     // has by its descriptor, and not into this one's.
     PartialFile(report.file).remove();
     PartialFile output(report.file);
-    Child ffmpeg(ffmpeg_words(report.frames_per_second), output.partial());
+    Child ffmpeg(ffmpeg_words(report.frames_per_second, scene.render.sky), output.partial());
     Progress progress("filming", "frames", numbers.size(), quiet);
     std::optional<Size> size;
     Signature signature;

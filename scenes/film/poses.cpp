@@ -29,9 +29,11 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
     for (std::uint64_t step : steps_needed(scene, frames))
         if (row_of(step) == trajectory_->rows())
             throw InputError(fmt::format(
-                "{}: step {} is not stored, but the frames asked for need it; simulate without "
-                "--store-every, or to the end",
-                trajectory.string(), step));
+                "{}: step {} is not stored, but the frames asked for need it{}",
+                trajectory.string(), step,
+                scene.camera.shutter > 0
+                    ? ", as an open camera.shutter may; tesserae run simulates again for it"
+                    : "; simulate without --store-every, or to the end"));
     after_ = scene.bodies;
 }
 

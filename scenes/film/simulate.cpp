@@ -20,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every) {
+TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every, const char* creator) {
     TrajectoryHeader header;
+    header.creator = creator;
     header.scene_name = scene.name;
     header.source = scene.source;
     header.effective = scene.effective;
@@ -177,14 +178,14 @@ Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_
 
 SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
                         std::uint64_t store_every, bool overwrite, bool quiet,
-                        parallel::Trace* trace) {
+                        parallel::Trace* trace, const char* creator) {
     const auto begin = std::chrono::steady_clock::now();
     const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
     SimulateReport report;
     report.rows = steps.size();
     report.first_step = report.last_step = steps.back();
     if (how_served(scene, file, store_every) != Served::kWhole) {
-        TrajectoryWriter writer(file, header_of(scene, store_every), steps, overwrite);
+        TrajectoryWriter writer(file, header_of(scene, store_every, creator), steps, overwrite);
         if (!writer.note().empty()) tell(writer.note());
         store_rows(scene, plan, writer, steps, report, quiet, trace);
         writer.finish();

@@ -37,6 +37,7 @@ Served how_served(const Scene& scene, const std::filesystem::path& file, std::ui
 /// duration: the bytes of every dataset are those of one straight run.
 /// Runs on the threads of the caller's parallel::Threads.
 /// @param overwrite   a trajectory of other motion or steps is replaced, one that serves is kept
+/// @param creator   what a new file says that it was made by
 /// @param trace     records the stages of every step that is taken
 /// @throws InputError   `file` is of another motion or motion version, stores other steps or more
 /// than the scene's,
@@ -45,6 +46,6 @@ Served how_served(const Scene& scene, const std::filesystem::path& file, std::ui
 /// @throws Stopped      after a signal; what is stored is kept
 SimulateReport simulate(const Scene& scene, const Plan& plan, const std::filesystem::path& file,
                         std::uint64_t store_every, bool overwrite, bool quiet,
-                        parallel::Trace* trace = nullptr);
+                        parallel::Trace* trace = nullptr, const char* creator = "tesserae");
 
 }  // namespace tesserae::scenes

@@ -52,6 +52,16 @@ std::vector<Block> blocks_of(const Grid& grid, std::uint64_t bodies) {
     return blocks;
 }
 
+/// Decimals without what rounding of doubles leaves at their end.
+double rounded(double value) {
+    constexpr double kParts = 1e9;
+    return std::round(value * kParts) / kParts + 0.0;  // -0 becomes 0
+}
+std::string rounded_text(double value) { return toml_text(rounded(value)); }
+std::string rounded_text(const Vec4& value) {
+    return toml_text(Vec4(value.unaryExpr([](double v) { return rounded(v); })));
+}
+
 /// The least n with n^3 >= count.
 std::uint64_t cube_side(std::uint64_t count) {
     auto n = static_cast<std::uint64_t>(std::cbrt(static_cast<double>(count)));
@@ -69,8 +79,8 @@ std::string lattice(const Block& b, const Vec4& spacing, double jitter, std::str
     return fmt::format(
         "\n[[lattice]]\n{}count = [{}, {}, {}, {}]\nspacing = {}\nposition = {}\n"
         "jitter = {}\nmaterial = \"bodies\"\n",
-        body, b.count[0], b.count[1], b.count[2], b.count[3], toml_text(spacing),
-        toml_text(b.centre), jitter);
+        body, b.count[0], b.count[1], b.count[2], b.count[3], rounded_text(spacing),
+        rounded_text(b.centre), jitter);
 }
 
 std::string lattices(const Grid& grid, std::uint64_t bodies, double jitter, std::string_view body) {
@@ -86,7 +96,8 @@ std::string wall(int axis, double side, double distance, std::string_view surfac
         "\n[[body]]\nname = \"wall-{}{}\"\nshape = \"hyperplane\"\nnormal = {}\n"
         "offset = {}\nvisible = false\n{}",
         side > 0 ? "below-" : "above-", "xyzw"[axis],
-        toml_text(Vec4((side * Vec4::Unit(axis)).array() + 0)), toml_text(-distance), surface);
+        rounded_text(Vec4((side * Vec4::Unit(axis)).array() + 0)), rounded_text(-distance),
+        surface);
 }
 
 std::string floor_and_walls(double half_width) {
@@ -154,8 +165,8 @@ pattern = "stripes"
 pattern_albedo = [0.93, 0.86, 0.75]
 pattern_size = 0.25
 )",
-                       name, physics, toml_text(position),
-                       toml_text(Vec4(0, kTargetHeight * height, 0, fourth)));
+                       name, physics, rounded_text(position),
+                       rounded_text(Vec4(0, kTargetHeight * height, 0, fourth)));
 }
 
 std::string gas(std::uint64_t bodies) {

@@ -30,6 +30,8 @@ constexpr Flag<BodyType> kFixed[] = {{"position", &BodyType::fixed_position},
 
 /// A name that frames can have.
 struct FileName {
+    static constexpr const char* kAllowed = "1 to 64 of A-Z a-z 0-9 . _ -";
+
     static constexpr const char* kExpected =
         "expected 1 to 64 of A-Z a-z 0-9 . _ -, not starting with a dot";
     static bool accepts(std::string_view name) {
@@ -45,21 +47,42 @@ struct FileName {
 };
 
 /// [scene]
-void scene_keys(auto& self, const auto& visit) { visit("name", self.name, FileName{}); }
+void scene_keys(auto& self, const auto& visit) {
+    visit({"name", "", "The frames' files begin with this name.", "the file's name"}, self.name,
+          FileName{});
+}
 
 /// [physics]
 void physics_keys(auto& self, const auto& visit) {
-    visit("gravity", self.gravity, Rule::kFinite);
-    visit("duration", self.duration, Rule::kNonNegative);
-    visit("steps_per_second", self.steps_per_second, Rule::kPositive);
-    visit("iterations", self.iterations, IntegerRange{1, 10000});
-    visit("tolerance", self.tolerance,
+    visit({"gravity", "m/s^2", "All that may move is accelerated by this."}, self.gravity,
+          Rule::kFinite);
+    visit({"duration", "s", "The motion, and so the film, lasts this long."}, self.duration,
+          Rule::kNonNegative);
+    visit({"steps_per_second", "1/s",
+           "The motion has so many time steps a second; more cost time and make it more accurate."},
+          self.steps_per_second, Rule::kPositive);
+    visit({"iterations", "",
+           "The contact solver sweeps at most so often over what touches in a sub-step; more hold "
+           "tall stacks and heavy loads better."},
+          self.iterations, IntegerRange{1, 10000});
+    visit({"tolerance", "m/s",
+           "Sweeps end once one changes no velocity by more than this; at 0 all are done."},
+          self.tolerance,
           RealOrUnwritten{interval_of(Rule::kNonNegative), PhysicsSettings{}.tolerance});
-    visit("substeps", self.substeps, IntegerRange{1, 1000});
-    visit("solver", self.solver, Names{kSolvers});
-    visit("integrator", self.integrator, Names{kRotationIntegrators});
-    visit("sleeping", self.sleeping);
-    visit("seed", self.seed, IntegerRange{});
+    visit({"substeps", "",
+           "A step is solved in so many parts; pairs that touch are looked for once a step."},
+          self.substeps, IntegerRange{1, 1000});
+    visit({"solver", "", "Overlap is removed by velocities, or by damped springs."}, self.solver,
+          Names{kSolvers});
+    visit({"integrator", "",
+           "A body turns freely with its angular momentum kept (euler), or its energy too "
+           "(midpoint)."},
+          self.integrator, Names{kRotationIntegrators});
+    visit({"sleeping", "",
+           "Groups of bodies at rest cost next to nothing until something touches them."},
+          self.sleeping);
+    visit({"seed", "", "This number changes no motion; it only counts for the hash of the scene."},
+          self.seed, IntegerRange{});
 }
 
 /// A [[body]] or [[lattice]] table, checked.
@@ -70,19 +93,53 @@ struct BodyTable {
     render::Appearance appearance;
     std::string material;  ///< empty: none was named
     Vec4 position = Vec4::Zero(), velocity = Vec4::Zero();
-    Bivector rotation, angular_velocity;  ///< [degrees], [rad/s]
-    double density = 1000;                ///< [kg/m^4]
+    std::vector<Bivector> rotation{1};  ///< turns, one after the other [degrees]
+    Bivector angular_velocity;          ///< [rad/s]
+    double density = 1000;              ///< [kg/m^4]
     bool has_mass = false;
     std::optional<Lattice> lattice;
     std::uint64_t count = 1;
 };
 
+/// How a body is turned: one turn in several planes at once, or several turns one after the other.
+struct Turns {
+    static constexpr const char* kType = "planes, or an array of them";
+    static constexpr const char* kAllowed = "";
+
+    void read(TableReader& reader, const char* key, std::vector<Bivector>& turns) const {
+        reader.read(key, turns,
+                    "{ xy = 30, zw = 15 }, in degrees, or an array of them: turns one after the "
+                    "other");
+    }
+    void write(EffectiveWriter& out, const char* key, const std::vector<Bivector>& turns) const {
+        std::string text;
+        for (const Bivector& turn : turns) text += (text.empty() ? "" : ", ") + toml_text(turn);
+        out.line(key, turns.size() == 1 ? text : "[" + text + "]");
+    }
+};
+struct TurningPlanes {
+    static constexpr const char* kAllowed = "";
+
+    void read(TableReader& reader, const char* key, Bivector& value) const {
+        reader.read(key, value, "{ xw = 2.0 }, in rad/s");
+    }
+    void write(EffectiveWriter& out, const char* key, const Bivector& value) const {
+        out.key(key, value);
+    }
+};
+
 /// A shape's name, and the parameters that its room lists.
 struct AnyShape {
+    static constexpr const char* kType = "string";
+    static constexpr const char* kAllowed = "see below";
+
     void read(TableReader& reader, const char* key, Shape& shape) const;
     void write(EffectiveWriter& out, const char* key, const Shape& shape) const;
 };
 struct MassOfBody {
+    static constexpr const char* kType = "real";
+    static constexpr const char* kAllowed = "1e-60 to 1e60";
+
     void read(TableReader& reader, const char* key, BodyTable& body) const {
         body.has_mass = reader.read(key, body.type.mass, Interval{kLeastMass, kLargestMass});
     }
@@ -92,6 +149,9 @@ struct MassOfBody {
 };
 /// Instead of a mass; the mass is written.
 struct DensityOfBody {
+    static constexpr const char* kType = "real";
+    static constexpr const char* kAllowed = "> 0";
+
     void read(TableReader& reader, const char* key, BodyTable& body) const {
         if (reader.read(key, body.density, Rule::kPositive) && body.has_mass)
             reader.fail(key, "there is a mass too; expected only one of them");
@@ -99,6 +159,8 @@ struct DensityOfBody {
     void write(EffectiveWriter&, const char*, const BodyTable&) const {}
 };
 struct MaterialName {
+    static constexpr const char* kAllowed = "name of a [[material]]";
+
     const MaterialNumbers& materials;
 
     void read(TableReader& reader, const char* key, std::string& name) const {
@@ -114,32 +176,68 @@ struct MaterialName {
 };
 
 /// [[body]] and [[lattice]]: what they are called and their shape
-void name_keys(auto& self, const auto& visit) { visit("name", self.name); }
-void shape_keys(auto& self, const auto& visit) { visit("shape", self.shape, AnyShape{}); }
+void name_keys(auto& self, const auto& visit) {
+    visit({"name", "",
+           "Reports, meshes, mattes and --set call the body by this; no two have the same.",
+           "body- and its number"},
+          self.name);
+}
+void shape_keys(auto& self, const auto& visit) {
+    visit({"shape", "", "The body has this shape; each shape has sizes of its own.", "required"},
+          self.shape, AnyShape{});
+}
 /// [[body]] and [[lattice]], if bounded: where they are
 void placing_keys(auto& self, const auto& visit) {
-    visit("position", self.position, Rule::kFinite);
-    visit("rotation", self.rotation);
-    visit("velocity", self.velocity, Rule::kFinite);
-    visit("angular_velocity", self.angular_velocity);
+    visit({"position", "m", "The centre of mass, or a lattice's centre, is here at time 0."},
+          self.position, Rule::kFinite);
+    visit({"rotation", "deg",
+           "The body is turned by these angles at time 0: all planes of a table at once, the "
+           "tables of an array one after the other; positive xy turns x toward y."},
+          self.rotation, Turns{});
+    visit({"velocity", "m/s", "The centre of mass moves so at time 0."}, self.velocity,
+          Rule::kFinite);
+    visit({"angular_velocity", "rad/s",
+           "The body turns so fast in the planes of the world's axes at time 0."},
+          self.angular_velocity, TurningPlanes{});
 }
 /// [[body]] and [[lattice]], if bounded: how heavy they are
 void mass_keys(auto& self, const auto& visit) {
-    visit("mass", self, MassOfBody{});
-    visit("density", self, DensityOfBody{});
+    visit({"mass", "kg", "The body has this mass; it stands instead of a density.",
+           "density times content"},
+          self, MassOfBody{});
+    visit({"density", "kg/m^4",
+           "A unit of the body's four-dimensional content has this mass; it stands instead of a "
+           "mass.",
+           "`1000.0`"},
+          self, DensityOfBody{});
 }
 /// [[body]] and [[lattice]]: how they touch and look
 void surface_keys(auto& self, const auto& visit, const MaterialNumbers& materials) {
-    visit("friction", self.type.friction, Rule::kNonNegative);
-    visit("rolling_friction", self.type.rolling_friction,
-          RealOrUnwritten{interval_of(Rule::kNonNegative)});
-    visit("restitution", self.type.restitution, Interval{0, 1});
-    visit("fixed", self.type, Flags<BodyType>{kFixed});
-    visit("material", self.material, MaterialName{materials});
-    visit("visible", self.appearance.visible);
+    visit({"friction", "",
+           "The body resists sliding this strongly; two that touch have the geometric mean of "
+           "theirs."},
+          self.type.friction, Rule::kNonNegative);
+    visit({"rolling_friction", "m",
+           "The body resists rolling and twisting this strongly; two that touch have the larger of "
+           "theirs."},
+          self.type.rolling_friction, RealOrUnwritten{interval_of(Rule::kNonNegative)});
+    visit({"restitution", "",
+           "The body bounces back at this part of its speed; two that touch have the larger of "
+           "theirs."},
+          self.type.restitution, Interval{0, 1});
+    visit({"fixed", "",
+           "Contacts do not change these; with a velocity the body moves at it, and nothing stops "
+           "it."},
+          self.type, Flags<BodyType>{kFixed});
+    visit({"material", "", "The body looks as the material of this name says.", "a grey of 0.8"},
+          self.material, MaterialName{materials});
+    visit({"visible", "", "The body is seen and casts shadows."}, self.appearance.visible);
 }
 
 struct LatticeCount {
+    static constexpr const char* kType = "4 integers";
+    static constexpr const char* kAllowed = ">= 1 each, at most 10^7 bodies in all";
+
     std::uint64_t most;  ///< bodies that the scene may still have
 
     void read(TableReader& reader, const char* key, std::array<std::uint32_t, 4>& count) const {
@@ -161,6 +259,9 @@ struct LatticeCount {
 };
 /// One distance for all axes, or four.
 struct Spacing {
+    static constexpr const char* kType = "real or 4 reals";
+    static constexpr const char* kAllowed = ">= 0";
+
     void read(TableReader& reader, const char* key, Vec4& spacing) const {
         if (reader.is_array(key)) {
             reader.read(key, spacing, Rule::kNonNegative);
@@ -174,10 +275,15 @@ struct Spacing {
 
 /// [[lattice]]: what a [[body]] has not
 void lattice_keys(auto& self, const auto& visit, std::uint64_t most_bodies) {
-    visit("count", self.count, Required{"expected four integers >= 1", LatticeCount{most_bodies}});
-    visit("spacing", self.spacing, Required{"expected a distance or four, >= 0", Spacing{}});
-    visit("jitter", self.jitter, Rule::kNonNegative);
-    visit("seed", self.seed, IntegerRange{});
+    visit({"count", "", "The grid has so many bodies along x, y, z and w."}, self.count,
+          Required{"expected four integers >= 1", LatticeCount{most_bodies}});
+    visit({"spacing", "m",
+           "Neighbouring centres are this far apart: one number for all four axes, or four."},
+          self.spacing, Required{"expected a distance or four, >= 0", Spacing{}});
+    visit({"jitter", "m", "Each body is moved at random along each axis by at most this."},
+          self.jitter, Rule::kNonNegative);
+    visit({"seed", "", "This number chooses the random numbers of jitter."}, self.seed,
+          IntegerRange{});
 }
 
 }  // namespace tesserae::scenes

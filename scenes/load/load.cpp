@@ -58,15 +58,18 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     for (const char* table :
          {"scene", "physics", "material", "body", "lattice", "camera", "light", "render"})
         root.has(table);
-    root.finish();
     EffectiveWriter out;
-    load_name(root, origin, scene, out);
-    load_physics(root, origin, scene, out);
-    const MaterialNumbers materials = load_materials(root, origin, scene, out);
-    load_bodies(root, origin, text, materials, overrides, scene, out);
-    load_camera(root, origin, scene, out);
-    load_lights(root, origin, scene, out);
-    load_render(root, origin, scene, out);
+    MaterialNumbers materials;
+    ErrorList errors;
+    errors.collect([&] { root.finish(); });
+    errors.collect([&] { load_name(root, origin, scene, out); });
+    errors.collect([&] { load_physics(root, origin, scene, out); });
+    errors.collect([&] { load_materials(root, origin, scene, out, materials); });
+    errors.collect([&] { load_bodies(root, origin, text, materials, overrides, scene, out); });
+    errors.collect([&] { load_camera(root, origin, scene, out); });
+    errors.collect([&] { load_lights(root, origin, scene, out); });
+    errors.collect([&] { load_render(root, origin, scene, out); });
+    errors.require_none();
     require_view(scene, origin);
     // Both refuse what no command could do.
     step_count(scene), frame_count(scene);

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -43,11 +44,18 @@ void visit_parameters(auto& shape, const auto& visit) {
 
 template <class S>
 void read_parameters(TableReader& reader, S& shape) {
-    shape.parameters(shape, [&](const char* size, auto& member, Rule rule) {
+    shape.parameters(shape, [&](const Key& size, auto& member, Rule rule) {
         // A plain number, such as a hyperplane's offset, is 0 where it is not given.
-        if (rule != Rule::kFinite) reader.require(size, expected_of(rule));
-        reader.read(size, member, rule);
+        if (rule != Rule::kFinite) reader.require(size.name, expected_of(rule));
+        reader.collect([&] { reader.read(size.name, member, rule); });
     });
+}
+
+/// Where the shape is not known any shape's sizes may be there: it is the shape that is wrong.
+void know_all_sizes(TableReader& reader) {
+    for (const Shape& any : kShapes)
+        visit_parameters(any, [&](const Key& size, auto&, Rule) { reader.has(size.name); });
+    reader.has("vertices");
 }
 
 /// Points, or a regular one's name and radius.
@@ -65,10 +73,10 @@ void read_parameters(TableReader& reader, Polychoron& shape) {
     }();
     reader.require("regular", "expected vertices, or a regular one's name, as \"24-cell\"");
     auto which = static_cast<std::size_t>(shape.regular) - 1;
-    reader.read("regular", which, kNames);
+    reader.collect([&] { reader.read("regular", which, kNames); });
     shape.regular = static_cast<RegularPolychoron>(which + 1);
-    reader.require("radius", expected_of(Rule::kPositive));
-    reader.read("radius", shape.radius, Rule::kPositive);
+    if (reader.has("regular")) reader.require("radius", expected_of(Rule::kPositive));
+    reader.collect([&] { reader.read("radius", shape.radius, Rule::kPositive); });
 }
 
 }  // namespace
@@ -78,14 +86,16 @@ void AnyShape::read(TableReader& reader, const char* key, Shape& shape) const {
         std::string expected = "expected one of";
         for (std::string_view name : kShapeNames) expected += fmt::format(" \"{}\"", name);
         reader.require(key, expected);
-        // Any shape's keys may be there: a misspelt "shape" is what must be found.
-        for (const Shape& any : kShapes)
-            visit_parameters(any, [&](const char* size, auto&, Rule) { reader.has(size); });
-        reader.has("vertices");
+        know_all_sizes(reader);
         return;
     }
     std::size_t kind = 0;
-    reader.read(key, kind, kShapeNames);
+    try {
+        reader.read(key, kind, kShapeNames);
+    } catch (const InputError&) {
+        know_all_sizes(reader);
+        throw;
+    }
     shape = kShapes[kind];
     std::visit([&](auto& s) { read_parameters(reader, s); }, shape);
 }
@@ -97,12 +107,24 @@ void AnyShape::write(EffectiveWriter& out, const char* key, const Shape& shape) 
 
 namespace {
 
+/// Turns about the world's axes, one after the other.
+Rotor rotor_of(std::span<const Bivector> turns) {
+    const auto one = [](const Bivector& degrees) {
+        return exp(-0.5 * std::numbers::pi / 180 * degrees);
+    };
+    Rotor rotor = one(turns.front());
+    for (const Bivector& turn : turns.subspan(1)) rotor = one(turn) * rotor;
+    return rotor;
+}
+
 /// A body without bounds never moves.
 void refuse_motion(TableReader& reader, BodyTable& body) {
-    const auto refuse = [&](const char* key, const auto&...) {
-        if (reader.has(key))
-            reader.fail(key,
-                        fmt::format("a {} never moves and has no {}", name_of(body.shape), key));
+    const auto refuse = [&](const Key& key, const auto&...) {
+        if (!reader.has(key.name)) return;
+        reader.collect([&] {
+            reader.fail(key.name, fmt::format("a {} never moves and has no {}", name_of(body.shape),
+                                              key.name));
+        });
     };
     placing_keys(body, refuse), mass_keys(body, refuse);
 }
@@ -113,8 +135,8 @@ void set_mass(TableReader& reader, BodyTable& body) {
     body.type.mass = body.density * content;
     if (body.type.mass >= kLeastMass && body.type.mass <= kLargestMass) return;
     std::string sizes;
-    visit_parameters(body.shape, [&](const char* key, const auto& value, Rule) {
-        sizes += fmt::format("{} = {}, ", key, toml_text(value));
+    visit_parameters(body.shape, [&](const Key& key, const auto& value, Rule) {
+        sizes += fmt::format("{} = {}, ", key.name, toml_text(value));
     });
     const std::string what =
         fmt::format("{}density = {} kg/m^4: the mass would be {} kg; expected {} to {}", sizes,
@@ -135,12 +157,12 @@ class BodyLoader {
         const std::size_t number = names_.size();
         std::string subject = fmt::format("{} {}", is_lattice ? "lattice" : "body", index);
         BodyTable body;
-        const bool named = TableReader(table, origin, subject).read("name", body.name);
+        const bool named = is_named(table, origin, subject, body.name);
         if (named) subject += fmt::format(" {}", toml_text(std::string_view(printable(body.name))));
         TableReader reader(table, origin, subject);
         const ReadKeys read{reader};
         name_keys(body, read);
-        check_name(reader, named, number, body.name);
+        reader.collect([&] { check_name(reader, named, number, body.name); });
         shape_keys(body, read);
         const bool bounded = is_bounded(body.shape);
         if (bounded)
@@ -150,7 +172,10 @@ class BodyLoader {
         surface_keys(body, read, materials_);
         if (is_lattice) lattice_keys(body.lattice.emplace(), read, kMaxBodies - total_);
         if (is_lattice && !bounded)
-            reader.fail("shape", fmt::format("a {} cannot be in a lattice", name_of(body.shape)));
+            reader.collect([&] {
+                reader.fail("shape",
+                            fmt::format("a {} cannot be in a lattice", name_of(body.shape)));
+            });
         reader.finish();
 
         // Material 0 is the grey of those that name none.
@@ -192,7 +217,7 @@ class BodyLoader {
         Bodies& bodies = scene_.bodies;
         scene_.names.push_back({body.name, static_cast<BodyId>(bodies.size()),
                                 static_cast<std::uint32_t>(body.count), body.lattice.has_value()});
-        const Rotor rotor = exp(-0.5 * std::numbers::pi / 180 * body.rotation);
+        const Rotor rotor = rotor_of(body.rotation);
         for (std::uint64_t i = 0; i < body.count; ++i) {
             bodies.type.push_back(type);
             bodies.position.push_back(body.lattice
@@ -205,6 +230,14 @@ class BodyLoader {
     }
 
   private:
+    /// Whether the table has a name; a wrong one is told later.
+    static bool is_named(const toml::table& table, const Origin& origin, const std::string& subject,
+                         std::string& name) {
+        TableReader reader(table, origin, subject);
+        bool is_read = false;
+        reader.collect([&] { is_read = reader.read("name", name); });
+        return is_read;
+    }
     /// Before completed(): clang 14 makes no code of it otherwise.
     template <class S>
     void complete_hull(TableReader& reader, S& shape) {
@@ -212,8 +245,8 @@ class BodyLoader {
             complete(shape);
         } catch (const InputError& error) {
             const char* culprit = nullptr;
-            shape.parameters(shape, [&](const char* key, auto&, Rule) {
-                if (culprit == nullptr) culprit = key;
+            shape.parameters(shape, [&](const Key& key, auto&, Rule) {
+                if (culprit == nullptr) culprit = key.name;
             });
             reader.fail(culprit, error.what());
         }
@@ -294,26 +327,30 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
         root.fail("body", "expected [[body]] tables, each with its subtables right after it");
     require_memory(text.body_count * kBytesPerTable, text.body_count, origin);
     BodyLoader loader(materials, scene, out);
+    ErrorList errors;
     std::size_t number = 0;
     const auto load = [&](const toml::table* table, const Origin& place) {
-        loader.append(loader.read(*table, place, false, number++));
+        errors.collect([&] { loader.append(loader.read(*table, place, false, number++)); });
     };
-    for (const TextPiece& piece : text.bodies) {
+    const auto load_piece = [&](const TextPiece& piece) {
         TomlDocument document(piece.text, {origin.place, piece.lines_before});
         overrides.apply_to_bodies(document.root(), number);
         TableReader tables(document.root(), document.origin(), "scene file");
         const auto bodies = tables.tables("body");
         tables.finish();
         for (const auto* table : bodies) load(table, document.origin());
-    }
+    };
+    for (const TextPiece& piece : text.bodies) errors.collect([&] { load_piece(piece); });
     // Bodies written as an array of inline tables.
     for (const auto* table : root.tables("body")) load(table, origin);
-    overrides.require_all_met(scene.names);
+    if (errors.is_empty()) errors.collect([&] { overrides.require_all_met(scene.names); });
 
     const auto lattices = root.tables("lattice");
     std::vector<BodyTable> lattice_tables;
     for (std::size_t i = 0; i < lattices.size(); ++i)
-        lattice_tables.push_back(loader.read(*lattices[i], origin, true, i));
+        errors.collect(
+            [&] { lattice_tables.push_back(loader.read(*lattices[i], origin, true, i)); });
+    errors.require_none();
     require_memory((loader.total() - number) * kBytesPerBody, loader.total(), origin);
     loader.reserve();
     for (const BodyTable& body : lattice_tables) loader.append(body);

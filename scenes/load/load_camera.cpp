@@ -35,18 +35,21 @@ void require_frame(TableReader& reader, const render::CameraDescription& c) {
 }
 
 void load_keys(TableReader& camera, const Origin& origin, Scene& scene, EffectiveWriter& out) {
-    for (const auto* table : camera.tables("key")) {
-        const std::vector<CameraKey>& before = scene.camera_keys;
-        TableReader reader(*table, origin, fmt::format("camera key {}", before.size()));
-        CameraKey key;
-        camera_key_keys(key, ReadKeys{reader}, before);
-        reader.finish();
-        if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view)
-            reader.fail_here("expected position, look_at, up, fourth or field_of_view");
-        out.table("[[camera.key]]");
-        camera_key_keys(key, WriteKeys{out}, before);
-        scene.camera_keys.push_back(key);
-    }
+    std::vector<const toml::table*> tables;
+    camera.collect([&] { tables = camera.tables("key"); });
+    for (std::size_t i = 0; i < tables.size(); ++i)
+        camera.collect([&] {
+            const std::vector<CameraKey>& before = scene.camera_keys;
+            TableReader reader(*tables[i], origin, fmt::format("camera key {}", i));
+            CameraKey key;
+            camera_key_keys(key, ReadKeys{reader}, before);
+            reader.finish();
+            if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view)
+                reader.fail_here("expected position, look_at, up, fourth or field_of_view");
+            out.table("[[camera.key]]");
+            camera_key_keys(key, WriteKeys{out}, before);
+            scene.camera_keys.push_back(key);
+        });
 }
 
 }  // namespace
@@ -63,7 +66,9 @@ void load_camera(TableReader& root, const Origin& origin, Scene& scene, Effectiv
     TableReader reader(*table, origin, "[camera]");
     camera_keys(camera, ReadKeys{reader});
     if (reader.has("slices") && camera.slices > 1 && camera.slice_thickness == 0)
-        reader.fail("slices", "expected a slice_thickness over which they are spread");
+        reader.collect([&] {
+            reader.fail("slices", "expected a slice_thickness over which they are spread");
+        });
     camera_keys(camera, write);
     load_keys(reader, origin, scene, out);
     reader.finish();

@@ -18,8 +18,9 @@ void load_physics(TableReader& root, const Origin& origin, Scene& scene, Effecti
 
 /// Index of each material by name. Material 0 is the grey of bodies that name none.
 using MaterialNumbers = std::unordered_map<std::string, std::uint32_t>;
-MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& scene,
-                               EffectiveWriter& out);
+/// @param numbers   gets them, also where an error is thrown: bodies may name what has errors
+void load_materials(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out,
+                    MaterialNumbers& numbers);
 
 /// All [[body]], then all [[lattice]].
 void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,

@@ -6,28 +6,40 @@
 
 namespace tesserae::scenes {
 
-MaterialNumbers load_materials(TableReader& root, const Origin& origin, Scene& scene,
-                               EffectiveWriter& out) {
-    MaterialNumbers numbers;
+void load_materials(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out,
+                    MaterialNumbers& numbers) {
     scene.materials.emplace_back();
     const auto tables = root.tables("material");
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-        TableReader reader(*tables[i], origin, fmt::format("material {}", i));
-        render::Material& material = scene.materials.emplace_back();
-        material_keys(material, ReadKeys{reader});
-        reader.finish();
-        out.table("[[material]]");
-        material_keys(material, WriteKeys{out});
-        const auto number = static_cast<std::uint32_t>(i + 1);
-        const auto [known, is_new] = numbers.emplace(material.name, number);
-        if (!is_new)
-            reader.fail("name",
-                        fmt::format("is the name of material {} already", known->second - 1));
-    }
-    return numbers;
+    ErrorList errors;
+    for (std::size_t i = 0; i < tables.size(); ++i)
+        errors.collect([&] {
+            TableReader reader(*tables[i], origin, fmt::format("material {}", i));
+            render::Material& material = scene.materials.emplace_back();
+            material_keys(material, ReadKeys{reader});
+            const auto number = static_cast<std::uint32_t>(i + 1);
+            const auto [known, is_new] = numbers.emplace(material.name, number);
+            if (!is_new && !material.name.empty())
+                reader.collect([&] {
+                    reader.fail("name", fmt::format("is the name of material {} already",
+                                                    known->second - 1));
+                });
+            reader.finish();
+            out.table("[[material]]");
+            material_keys(material, WriteKeys{out});
+        });
+    errors.require_none();
 }
 
 namespace {
+
+/// Where the type is not known any type's keys may be there: it is the type that is wrong.
+void know_all_places(TableReader& reader) {
+    LightTable any;
+    for (const LightType type : {LightType::kSun, LightType::kSphere}) {
+        any.type = type;
+        light_place_keys(any, [&](const Key& key, const auto&...) { reader.has(key.name); });
+    }
+}
 
 void add_light(const LightTable& light, render::Lights& lights) {
     const render::Color color = light.color * light.strength;
@@ -51,13 +63,21 @@ void add_light(const LightTable& light, render::Lights& lights) {
 
 void load_lights(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out) {
     std::vector<LightTable> lights;
-    for (const auto* table : root.tables("light")) {
-        TableReader reader(*table, origin, fmt::format("light {}", lights.size()));
-        const ReadKeys read{reader};
-        LightTable& light = lights.emplace_back();
-        light_type_keys(light, read), light_color_keys(light, read), light_place_keys(light, read);
-        reader.finish();
-    }
+    ErrorList errors;
+    for (const auto* table : root.tables("light"))
+        errors.collect([&] {
+            TableReader reader(*table, origin, fmt::format("light {}", lights.size()));
+            const ReadKeys read{reader};
+            LightTable& light = lights.emplace_back();
+            light_type_keys(light, read);
+            if (reader.has("type") && !reader.has_errors())
+                light_place_keys(light, read);
+            else
+                know_all_places(reader);
+            light_color_keys(light, read);
+            reader.finish();
+        });
+    errors.require_none();
     // A scene without lights is lit by a sky of 1.
     if (lights.empty()) lights.emplace_back();
     const WriteKeys write{out};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace tesserae::scenes {
@@ -32,10 +33,25 @@ std::size_t edits(std::string_view a, std::string_view b) {
     return rows[a.size() % 3][b.size()];
 }
 
+/// What everybody types at first, and what it is called here.
+constexpr std::pair<std::string_view, std::string_view> kUsualNames[] = {
+    {"tesseract", "hyperbox"},  {"cube", "hyperbox"},        {"box", "hyperbox"},
+    {"hypercube", "hyperbox"},  {"sphere", "hypersphere"},   {"ball", "hypersphere"},
+    {"glome", "hypersphere"},   {"plane", "hyperplane"},     {"floor", "hyperplane"},
+    {"ground", "hyperplane"},   {"capsule", "hypercapsule"}, {"cylinder", "duocylinder"},
+    {"polytope", "polychoron"}, {"bodies", "body"},          {"object", "body"},
+    {"colour", "color"},        {"colour", "albedo"},        {"color", "albedo"},
+    {"intensity", "strength"},  {"fov", "field_of_view"},    {"fps", "frames_per_second"},
+    {"bounce", "restitution"},  {"pos", "position"},
+};
+
 }  // namespace
 
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names) {
     if (word.size() > kLongest) return {};
+    for (const auto& [usual, name] : kUsualNames)
+        if (word == usual && std::find(names.begin(), names.end(), name) != names.end())
+            return name;
     std::string_view nearest;
     std::size_t fewest = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (std::string_view name : names) {

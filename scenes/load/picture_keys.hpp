@@ -44,24 +44,58 @@ constexpr Flag<render::Channels> kChannels[] = {{"color", &render::Channels::col
                                                 {"cryptomatte", &render::Channels::cryptomatte}};
 
 struct NotEmpty {
+    static constexpr const char* kAllowed = "not empty";
+
     void read(TableReader& reader, const char* key, std::string& value) const {
         if (reader.read(key, value) && value.empty())
             reader.fail(key, "expected a name that is not empty");
     }
 };
 
+/// Glass takes no light where nothing else is said.
+struct AlbedoOf {
+    static constexpr const char* kAllowed = "0 to 1";
+    render::MaterialKind kind;
+
+    void read(TableReader& reader, const char* key, render::Color& albedo) const {
+        if (kind == render::MaterialKind::kGlass) albedo.setOnes();
+        reader.read(key, albedo, kUnit);
+    }
+    void write(EffectiveWriter& out, const char* key, const render::Color& albedo) const {
+        out.key(key, albedo);
+    }
+};
+
 /// [[material]]
 void material_keys(auto& self, const auto& visit) {
-    visit("name", self.name, Required{"expected a string", NotEmpty{}});
-    visit("kind", self.kind, Names{kMaterialKinds});
-    visit("albedo", self.albedo, kUnit);
-    visit("pattern", self.pattern, Names{kPatterns});
-    visit("pattern_albedo", self.pattern_albedo, kUnit);
-    visit("pattern_size", self.pattern_size, Rule::kPositive);
-    visit("albedo_variation", self.albedo_variation, RealOrUnwritten{kUnit});
-    visit("ior", self.ior, Interval{1, kLargest, true});
-    visit("roughness", self.roughness, kUnit);
-    visit("emission", self.emission, kNotNegative);
+    visit({"name", "", "A body names its material by this."}, self.name,
+          Required{"expected a string", NotEmpty{}});
+    visit({"kind", "", "The surface is matt, a mirror, clear glass or a blurred mirror."},
+          self.kind, Names{kMaterialKinds});
+    visit({"albedo", "",
+           "The surface sends this part of red, green and blue light back; glass lets this part "
+           "through at each surface.",
+           "`[0.8, 0.8, 0.8]`, of glass `[1.0, 1.0, 1.0]`"},
+          self.albedo, AlbedoOf{self.kind});
+    visit({"pattern", "",
+           "Cells or stripes of a second albedo lie in the body's own four axes; the slice cuts "
+           "them as it cuts the body."},
+          self.pattern, Names{kPatterns});
+    visit({"pattern_albedo", "", "The pattern's other cells have this albedo."},
+          self.pattern_albedo, kUnit);
+    visit({"pattern_size", "m", "A cell of the pattern has this edge, a stripe this width."},
+          self.pattern_size, Rule::kPositive);
+    visit({"albedo_variation", "",
+           "Bodies of this material differ in brightness and hue by up to this part."},
+          self.albedo_variation, RealOrUnwritten{kUnit});
+    visit({"ior", "", "Glass has this index of refraction against empty space."}, self.ior,
+          Interval{1, kLargest, true});
+    visit({"roughness", "", "A rough mirror is blurred by this much; 0 is a perfect mirror."},
+          self.roughness, kUnit);
+    visit({"emission", "",
+           "The surface itself sends this radiance to every side; it lights other bodies where "
+           "integrator is path."},
+          self.emission, kNotNegative);
 }
 
 enum class LightType { kSun, kPoint, kSphere, kSky };
@@ -79,38 +113,69 @@ struct LightTable {
 };
 
 void light_type_keys(auto& self, const auto& visit) {
-    visit("type", self.type,
-          Required{R"(expected "sun", "point", "sphere" or "sky")", Names{kLightTypes}});
+    visit({"type", "",
+           "The light comes from far away, from a point, from a ball, or from everywhere."},
+          self.type, Required{R"(expected "sun", "point", "sphere" or "sky")", Names{kLightTypes}});
 }
 void light_color_keys(auto& self, const auto& visit) {
-    visit("color", self.color, kNotNegative);
-    visit("strength", self.strength, kNotNegative);
+    visit({"color", "", "Red, green and blue have these parts of the strength."}, self.color,
+          kNotNegative);
+    visit({"strength", "",
+           "This times the color is the irradiance of a sun on a surface that faces it, the flux "
+           "of a point, the radiance of a sphere and of the sky."},
+          self.strength, kNotNegative);
 }
 /// Those of the light's type.
 void light_place_keys(auto& self, const auto& visit) {
     if (self.type == LightType::kSun) {
-        visit("direction", self.direction,
+        visit({"direction", "", "The light travels this way; the length does not matter."},
+              self.direction,
               Required{"expected four numbers: the way that the light travels", Rule::kNonZero});
-        visit("angle", self.angle, Interval{0, 30});
+        visit({"angle", "deg",
+               "The sun's disc is seen under twice this angle; 0 makes hard shadows."},
+              self.angle, Interval{0, 30});
     }
     if (self.type == LightType::kPoint || self.type == LightType::kSphere)
-        visit("position", self.position, Required{"expected four numbers", Rule::kFinite});
+        visit({"position", "m",
+               "The light's centre is here; its light falls off with the cube of the distance."},
+              self.position, Required{"expected four numbers", Rule::kFinite});
     if (self.type == LightType::kSphere)
-        visit("radius", self.radius, Required{"expected a number > 0", Rule::kPositive});
+        visit({"radius", "m",
+               "The ball of light has this radius; it is seen and makes soft shadows, and nothing "
+               "collides with it."},
+              self.radius, Required{"expected a number > 0", Rule::kPositive});
 }
 
 /// [camera], but for its [[camera.key]]
 void camera_keys(auto& self, const auto& visit) {
-    visit("position", self.position, Rule::kFinite);
-    visit("look_at", self.look_at, Rule::kFinite);
-    visit("up", self.up, Rule::kNonZero);
-    visit("fourth", self.fourth, Rule::kNonZero);
-    visit("field_of_view", self.field_of_view, kFieldOfView);
-    visit("aperture", self.aperture, Rule::kNonNegative);
-    visit("focus_distance", self.focus_distance, Rule::kNonNegative);
-    visit("shutter", self.shutter, kUnit);
-    visit("slice_thickness", self.slice_thickness, Rule::kNonNegative);
-    visit("slices", self.slices, IntegerRange{1, 1000});
+    visit({"position", "m", "The camera is here; the slice goes through it."}, self.position,
+          Rule::kFinite);
+    visit({"look_at", "m", "This point is in the middle of the picture."}, self.look_at,
+          Rule::kFinite);
+    visit({"up", "", "This direction is up in the picture."}, self.up, Rule::kNonZero);
+    visit({"fourth", "",
+           "The camera does not see along this direction; the slice is orthogonal to it."},
+          self.fourth, Rule::kNonZero);
+    visit({"field_of_view", "deg", "The picture spans this angle from its bottom to its top."},
+          self.field_of_view, kFieldOfView);
+    visit({"aperture", "m",
+           "The lens has this radius and blurs what is out of focus; 0 is a pinhole."},
+          self.aperture, Rule::kNonNegative);
+    visit(
+        {"focus_distance", "m",
+         "What lies this far along the forward direction is sharp; 0 is the distance of look_at."},
+        self.focus_distance, Rule::kNonNegative);
+    visit({"shutter", "frames",
+           "The shutter is open for this part of a frame, from the frame's time on; it blurs what "
+           "moves."},
+          self.shutter, kUnit);
+    visit({"slice_thickness", "m",
+           "The picture shows this range along fourth, centred on the slice."},
+          self.slice_thickness, Rule::kNonNegative);
+    visit(
+        {"slices", "",
+         "So many sharp slices of the range are shown side by side; 1 averages the range instead."},
+        self.slices, IntegerRange{1, 1000});
 }
 
 /// Sine of the angle below which camera directions count as parallel; Camera's own bound is lower.
@@ -118,6 +183,8 @@ constexpr double kParallel = 1e-7;
 
 /// The time of a camera key: later than the last one's.
 struct NextTime {
+    static constexpr const char* kAllowed = "after the last key's";
+
     std::span<const CameraKey> before;
 
     void read(TableReader& reader, const char* key, double& time) const {
@@ -137,6 +204,8 @@ inline Vec4 unit_direction(const Vec4& direction) {
 
 /// A direction, made unit, that the camera can turn to from the last key's in one way only.
 struct Turn {
+    static constexpr const char* kAllowed = "not opposite to the last key's";
+
     std::span<const CameraKey> before;
     std::optional<Vec4> CameraKey::*part;
 
@@ -155,12 +224,23 @@ struct Turn {
 /// [[camera.key]]
 /// @param before   the keys before it
 void camera_key_keys(auto& self, const auto& visit, std::span<const CameraKey> before) {
-    visit("time", self.time, Required{"expected a time in s", NextTime{before}});
-    visit("position", self.position, Rule::kFinite);
-    visit("look_at", self.look_at, Rule::kFinite);
-    visit("up", self.up, Turn{before, &CameraKey::up});
-    visit("fourth", self.fourth, Turn{before, &CameraKey::fourth});
-    visit("field_of_view", self.field_of_view, kFieldOfView);
+    visit({"time", "s", "The camera is so at this time, which is later than the key before."},
+          self.time, Required{"expected a time in s", NextTime{before}});
+    visit({"position", "m", "The camera is here at this time.", "as other keys say"}, self.position,
+          Rule::kFinite);
+    visit({"look_at", "m", "This point is in the middle of the picture at this time.",
+           "as other keys say"},
+          self.look_at, Rule::kFinite);
+    visit({"up", "", "This direction is up in the picture at this time.", "as other keys say"},
+          self.up, Turn{before, &CameraKey::up});
+    visit({"fourth", "",
+           "The camera does not see along this direction at this time; a change turns the slice.",
+           "as other keys say"},
+          self.fourth, Turn{before, &CameraKey::fourth});
+    visit({"field_of_view", "deg",
+           "The picture spans this angle from its bottom to its top at this time.",
+           "as other keys say"},
+          self.field_of_view, kFieldOfView);
 }
 
 constexpr int kMaxSize = 65536;
@@ -170,6 +250,9 @@ constexpr IntegerRange kSampleCounts{1, 1 << 20};
 
 /// Width and height, kept in two members.
 struct FrameSize {
+    static constexpr const char* kType = "[width, height]";
+    static constexpr const char* kAllowed = "1 to 65536 each";
+
     void read(TableReader& reader, const char* key, render::Settings& s) const {
         std::array<std::int64_t, 2> size = {s.width, s.height};
         reader.read(key, size, {1, kMaxSize});
@@ -183,6 +266,9 @@ struct FrameSize {
 /// What --crop sets. Scene files may have it too: the canonical text does, which is read again from
 /// trajectories and folders of frames.
 struct CropOf {
+    static constexpr const char* kType = "[x0, y0, x1, y1]";
+    static constexpr const char* kAllowed = "inside the frame";
+
     int width, height;
 
     void read(TableReader& reader, const char* key, render::Crop& crop) const {
@@ -202,37 +288,76 @@ struct CropOf {
 
 /// [render]: the frames
 void frame_keys(auto& self, const auto& visit) {
-    visit("size", self, FrameSize{});
-    visit("frames_per_second", self.frames_per_second, Rule::kPositive);
-    visit("samples", self.samples, kSampleCounts);
+    visit({"size", "pixels", "The frames have this width and height."}, self, FrameSize{});
+    visit({"frames_per_second", "1/s",
+           "A second of the motion has so many frames; the film plays at this rate."},
+          self.frames_per_second, Rule::kPositive);
+    visit({"samples", "",
+           "A pixel has so many samples; more of them make edges, shadows and traced light less "
+           "noisy."},
+          self.samples, kSampleCounts);
 }
 /// [render]: a pixel
 void pixel_keys(auto& self, const auto& visit) {
-    visit("filter", self.filter, Names{kFilters});
-    visit("filter_width", self.filter_width, Interval{0, 100, true});
-    visit("noise_target", self.noise_target, Rule::kNonNegative);
-    visit("max_samples", self.max_samples, kSampleCounts);
-    visit("seed", self.seed, IntegerOrUnwritten{});
-    visit("lock_noise", self.lock_noise, FalseOrUnwritten{});
+    visit({"filter", "", "The samples in and around a pixel are weighted by this function."},
+          self.filter, Names{kFilters});
+    visit({"filter_width", "pixels", "The filter is this wide."}, self.filter_width,
+          Interval{0, 100, true});
+    visit({"noise_target", "",
+           "A pixel whose standard error is above this part of white gets more samples; 0 gives "
+           "every pixel the same."},
+          self.noise_target, Rule::kNonNegative);
+    visit({"max_samples", "", "A pixel has at most so many samples where there is a noise_target.",
+           "samples"},
+          self.max_samples, kSampleCounts);
+    visit({"seed", "", "This number chooses the random numbers of the samples."}, self.seed,
+          IntegerOrUnwritten{});
+    visit({"lock_noise", "", "Every frame has the random numbers of frame 0."}, self.lock_noise,
+          FalseOrUnwritten{});
 }
 /// [render]: the rays
 void ray_keys(auto& self, const auto& visit) {
-    visit("integrator", self.integrator, Names{kPictureIntegrators});
-    visit("bounces", self.bounces, IntegerRange{0, kMaxBounces});
-    visit("clamp_indirect", self.clamp_indirect, Rule::kNonNegative);
-    visit("intersector", self.intersector, Names{kIntersectors});
-    visit("max_steps", self.max_steps, IntegerRange{1, kMaxSteps});
-    visit("max_distance", self.max_distance, Rule::kNonNegative);
-    visit("sky", self.sky, NamesOrUnwritten{{kSkies}});
-    visit("tile", self.tile, IntegerRange{8, 512});
+    visit({"integrator", "",
+           "Light is found in closed form from lamps and an even sky, or by paths through the "
+           "scene."},
+          self.integrator, Names{kPictureIntegrators});
+    visit({"bounces", "",
+           "Light is followed by way of so many surfaces where integrator is path; 0 is light "
+           "straight from what glows."},
+          self.bounces, IntegerRange{0, kMaxBounces});
+    visit({"clamp_indirect", "",
+           "A sample gets at most this radiance by way of two surfaces or more, which removes "
+           "bright specks; 0 is no limit."},
+          self.clamp_indirect, Rule::kNonNegative);
+    visit({"intersector", "", "Rays meet bodies by sphere tracing or in closed form."},
+          self.intersector, Names{kIntersectors});
+    visit({"max_steps", "", "A sphere trace gives up after so many steps."}, self.max_steps,
+          IntegerRange{1, kMaxSteps});
+    visit({"max_distance", "m",
+           "Nothing farther than this along a ray is met, but for lights; 0 is no limit."},
+          self.max_distance, Rule::kNonNegative);
+    visit({"sky", "",
+           "The picture shows the sky itself, or leaves it out, so that it can be laid over "
+           "another."},
+          self.sky, NamesOrUnwritten{{kSkies}});
+    visit({"tile", "pixels",
+           "Threads take and EXR files store tiles of this edge; it changes no pixel."},
+          self.tile, IntegerRange{8, 512});
 }
 /// [render]: the files
 void file_keys(auto& self, const auto& visit) {
-    visit("channels", self.channels,
+    visit({"channels", "", "The EXR files hold these channels."}, self.channels,
           Flags<render::Channels>{kChannels, "expected at least one channel"});
-    visit("compression", self.compression, Names{kCompressions});
-    visit("exposure", self.exposure, Interval{-1000, 1000});
-    visit("crop", self.crop, CropOf{self.width, self.height});
+    visit({"compression", "", "The EXR files are compressed so; all kinds are lossless."},
+          self.compression, Names{kCompressions});
+    visit({"exposure", "stops",
+           "Previews and film are brighter by a factor of two a stop; the EXR files stay."},
+          self.exposure, Interval{-1000, 1000});
+    visit({"crop", "pixels",
+           "Only the pixels from x0 to x1 and y0 to y1 are rendered, counted from the top left, x1 "
+           "and y1 left out.",
+           "the whole frame"},
+          self.crop, CropOf{self.width, self.height});
 }
 
 }  // namespace tesserae::scenes

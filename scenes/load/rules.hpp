@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,34 +9,44 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/key.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/toml_reader.hpp"
 
 // Every table of a scene file has one list of its keys (picture_keys.hpp, body_keys.hpp): a
 // function that calls visit(key, value, rule) for each. ReadKeys fills the values from a table of
-// the file, WriteKeys makes its canonical text: no key can be read and not written.
+// the file, WriteKeys makes its canonical text, DescribeKeys (reference.cpp) the reference: no key
+// can be read and not written or not explained.
 //
 // A rule says what a value must be: Rule or Interval for reals, none where the type says all, or
 // one of these, with functions of its own for how a key is read, written, or both:
 //   rule.read(TableReader&, key, value&)         leaves the value where the key is absent
 //   rule.write(EffectiveWriter&, key, value)     may write nothing
+// Such a rule says in words what it takes: kAllowed and, where the value's type does not tell,
+// kType; or it has `names`, `flags`, `interval` or `range`.
 namespace tesserae::scenes {
 
-/// Reads the keys of a list from a table.
+/// Reads the keys of a list from a table. Errors are told by the table's finish().
 struct ReadKeys {
     TableReader& reader;
 
-    void operator()(const char* key, auto& value) const { reader.read(key, value); }
-    void operator()(const char* key, auto& value, const auto& rule) const {
-        if constexpr (requires { rule.read(reader, key, value); })
-            rule.read(reader, key, value);
-        else
-            reader.read(key, value, rule);
+    void operator()(const Key& key, auto& value) const {
+        reader.collect([&] { reader.read(key.name, value); });
+    }
+    void operator()(const Key& key, auto& value, const auto& rule) const {
+        reader.collect([&] {
+            if constexpr (requires { rule.read(reader, key, value); })
+                rule.read(reader, key, value);
+            else if constexpr (requires { rule.read(reader, key.name, value); })
+                rule.read(reader, key.name, value);
+            else
+                reader.read(key.name, value, rule);
+        });
     }
     /// A key without a default.
     template <class T>
-    void operator()(const char* key, std::optional<T>& value, const auto& rule) const {
-        if (reader.has(key)) (*this)(key, value.emplace(), rule);
+    void operator()(const Key& key, std::optional<T>& value, const auto& rule) const {
+        if (reader.has(key.name)) (*this)(key, value.emplace(), rule);
     }
 };
 
@@ -43,15 +54,17 @@ struct ReadKeys {
 struct WriteKeys {
     EffectiveWriter& out;
 
-    void operator()(const char* key, const auto& value) const { out.key(key, value); }
-    void operator()(const char* key, const auto& value, const auto& rule) const {
+    void operator()(const Key& key, const auto& value) const { out.key(key.name, value); }
+    void operator()(const Key& key, const auto& value, const auto& rule) const {
         if constexpr (requires { rule.write(out, key, value); })
             rule.write(out, key, value);
+        else if constexpr (requires { rule.write(out, key.name, value); })
+            rule.write(out, key.name, value);
         else
-            out.key(key, value);
+            out.key(key.name, value);
     }
     template <class T>
-    void operator()(const char* key, const std::optional<T>& value, const auto& rule) const {
+    void operator()(const Key& key, const std::optional<T>& value, const auto& rule) const {
         if (value) (*this)(key, *value, rule);
     }
 };
@@ -80,6 +93,8 @@ struct IntegerOrUnwritten {
     }
 };
 struct FalseOrUnwritten {
+    static constexpr const char* kAllowed = "";
+
     void read(TableReader& reader, const char* key, bool& value) const { reader.read(key, value); }
     void write(EffectiveWriter& out, const char* key, bool value) const {
         if (value) out.key(key, value);
@@ -142,10 +157,10 @@ struct Required {
     const char* expected;
     R rule;
 
-    void read(TableReader& reader, const char* key, auto& value) const {
-        if (reader.require(key, expected)) ReadKeys{reader}(key, value, rule);
+    void read(TableReader& reader, const Key& key, auto& value) const {
+        if (reader.require(key.name, expected)) ReadKeys{reader}(key, value, rule);
     }
-    void write(EffectiveWriter& out, const char* key, const auto& value) const {
+    void write(EffectiveWriter& out, const Key& key, const auto& value) const {
         WriteKeys{out}(key, value, rule);
     }
 };

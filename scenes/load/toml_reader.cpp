@@ -21,6 +21,37 @@ std::string place_of(const toml::source_region& region, const Origin& origin) {
                        region.begin.column);
 }
 
+/// What a syntax error most likely comes from.
+std::string syntax_hint(const toml::parse_error& error, std::string_view text) {
+    const std::string_view what = error.description();
+    const auto says = [&](std::string_view part) { return what.find(part) != what.npos; };
+    // The line that the parser stopped in, to see whether it stopped at its end.
+    for (auto line = error.source().begin.line; line > 1 && !text.empty(); --line)
+        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    const auto length = std::min(text.find_first_of("\r\n"), text.size());
+    const bool at_end = error.source().begin.column > length;
+    if (says("string") && (says("end-of-file") || (says("control characters") && at_end)))
+        return "; the string has no closing quote";
+    if (says("could not determine value type"))
+        return "; expected a number, true or false, a \"string\" in quotes, an [array] or a "
+               "{ key = table }";
+    if (!says("cannot redefine existing table")) return {};
+    for (const char* table : {"body", "lattice", "material", "light"})
+        if (says(fmt::format("'{}'", table)))
+            return fmt::format("; there may be several [[{}]], each with two brackets", table);
+    return "; expected one table of this name, with all its keys";
+}
+
+/// An error with the place that it names.
+PlacedError error_at(const toml::source_region& region, const Origin& origin,
+                     const std::string& what) {
+    const bool is_placed = !region.path && region.begin;
+    constexpr auto kNowhere = std::numeric_limits<std::size_t>::max();
+    return {fmt::format("{}: {}", place_of(region, origin), what),
+            is_placed ? region.begin.line + origin.lines_before : kNowhere,
+            is_placed ? region.begin.column : kNowhere};
+}
+
 void append_value(std::string& out, const toml::node& node, std::size_t limit) {
     if (out.size() > limit) return;
     if (const auto* array = node.as_array()) {
@@ -97,8 +128,9 @@ TomlDocument::TomlDocument(std::string_view text, Origin origin) : origin_(std::
     try {
         root_ = std::make_unique<toml::table>(toml::parse(text));
     } catch (const toml::parse_error& error) {
-        throw InputError(fmt::format("{}: not valid TOML: {}", place_of(error.source(), origin_),
-                                     printable(error.description(), 300)));
+        throw error_at(error.source(), origin_,
+                       fmt::format("not valid TOML: {}{}", printable(error.description(), 300),
+                                   syntax_hint(error, text)));
     }
 }
 
@@ -119,15 +151,19 @@ bool TableReader::require(std::string_view key, std::string_view expected) {
     return false;
 }
 
+std::string TableReader::what_of(const toml::node& node, std::string_view key,
+                                 std::string_view what) const {
+    return fmt::format("{}: {} = {}: {}", subject_, printable(key), shown(node), what);
+}
+
 std::string TableReader::text_at(const toml::node& node, std::string_view key,
                                  std::string_view what) const {
-    return fmt::format("{}: {}: {} = {}: {}", place_of(node.source(), origin_), subject_,
-                       printable(key), shown(node), what);
+    return fmt::format("{}: {}", place_of(node.source(), origin_), what_of(node, key, what));
 }
 
 void TableReader::fail_at(const toml::node& node, std::string_view key,
                           std::string_view what) const {
-    throw InputError(text_at(node, key, what));
+    throw error_at(node.source(), origin_, what_of(node, key, what));
 }
 
 std::string TableReader::remark(std::string_view key, std::string_view what) {
@@ -142,25 +178,36 @@ void TableReader::fail(std::string_view key, std::string_view what) {
 }
 
 void TableReader::fail_here(std::string_view what) const {
-    throw InputError(fmt::format("{}: {}: {}", place_of(table_.source(), origin_), subject_, what));
+    throw error_at(table_.source(), origin_, fmt::format("{}: {}", subject_, what));
+}
+
+PlacedError TableReader::unknown_key(const toml::key& key, const toml::node& node) const {
+    std::string hint = did_you_mean(key.str(), known_);
+    if (key == "key" && node.is_array_of_tables())
+        hint = "; only the camera moves by keys, a body that is fixed moves at its velocity";
+    if (hint.empty()) {
+        hint = "; known here:";
+        for (std::string_view name : known_) hint += fmt::format(" {}", name);
+    }
+    // A key from --set stands where its value does.
+    return error_at(
+        node.source().path ? node.source() : key.source(), origin_,
+        what_of(node, key.str(),
+                fmt::format("unknown {}{}",
+                            node.is_table() || node.is_array_of_tables() ? "table" : "key", hint)));
 }
 
 void TableReader::finish() {
+    bool is_known = true;
     for (const auto& [key, node] : table_) {
         if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-        // A key from --set stands where its value does.
-        const auto& region = node.source().path ? node.source() : key.source();
-        std::string hint = did_you_mean(key.str(), known_);
-        if (hint.empty()) {
-            hint = "; known here:";
-            for (std::string_view name : known_) hint += fmt::format(" {}", name);
-        }
-        throw InputError(fmt::format("{}: {}: {} = {}: unknown {}{}", place_of(region, origin_),
-                                     subject_, printable(key.str()), shown(node),
-                                     node.is_table() || node.is_array_of_tables() ? "table" : "key",
-                                     hint));
+        is_known = false;
+        errors_.add(unknown_key(key, node));
     }
-    if (!missing_.empty()) fail_here(missing_.front());
+    // Where a key is misspelt, what is missing is there.
+    if (is_known)
+        for (const std::string& missing : missing_) collect([&] { fail_here(missing); });
+    errors_.require_none();
 }
 
 double TableReader::real_of(const toml::node& node, std::string_view key, Interval interval,
@@ -278,18 +325,36 @@ bool TableReader::read(std::string_view key, render::Color& value, Interval inte
     return read_reals(key, value.data(), 3, interval);
 }
 
-bool TableReader::read(std::string_view key, Bivector& value) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return false;
+void TableReader::read_planes(const toml::node& node, std::string_view key, Bivector& value,
+                              const char* example) const {
     constexpr std::array<std::string_view, 6> kPlanes = {"xy", "xz", "xw", "yz", "yw", "zw"};
     const std::array<double*, 6> parts = {&value.xy, &value.xz, &value.xw,
                                           &value.yz, &value.yw, &value.zw};
-    const auto* table = node->as_table();
+    const auto* table = node.as_table();
     if (table == nullptr)
-        fail_at(*node, key, "wrong type; expected a table of planes such as { xy = 30, zw = 15 }");
+        fail_at(node, key,
+                fmt::format("wrong type; expected a table of planes such as {}", example));
     TableReader planes(*table, origin_, fmt::format("{}: {}", subject_, key));
-    for (std::size_t i = 0; i < kPlanes.size(); ++i) planes.read(kPlanes[i], *parts[i], Interval{});
+    for (std::size_t i = 0; i < kPlanes.size(); ++i)
+        planes.collect([&] { planes.read(kPlanes[i], *parts[i], Interval{}); });
     planes.finish();
+}
+
+bool TableReader::read(std::string_view key, Bivector& value, const char* example) {
+    const toml::node* node = find(key);
+    if (node != nullptr) read_planes(*node, key, value, example);
+    return node != nullptr;
+}
+
+bool TableReader::read(std::string_view key, std::vector<Bivector>& values, const char* example) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return false;
+    const auto* array = node->as_array();
+    if (array != nullptr && array->empty()) fail_at(*node, key, "expected at least one turn");
+    values.assign(array == nullptr ? 1 : array->size(), Bivector());
+    if (array == nullptr) read_planes(*node, key, values.front(), example);
+    for (std::size_t i = 0; array != nullptr && i < values.size(); ++i)
+        read_planes(*array->get(i), fmt::format("{}[{}]", key, i), values[i], example);
     return true;
 }
 

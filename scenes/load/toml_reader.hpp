@@ -14,6 +14,7 @@
 #include "core/algebra/bivector.hpp"
 #include "core/shape/room.hpp"
 #include "render/description.hpp"
+#include "scenes/load/error_list.hpp"
 #include "scenes/load/toml_declarations.hpp"
 
 namespace tesserae::scenes {
@@ -60,8 +61,8 @@ class TomlDocument {
 };
 
 /// Reads one table's keys and knows which were asked for. Every function throws InputError:
-/// `file:line:column: subject: key = VALUE: what was expected`. Keys that are absent leave the
-/// value as it was and return false.
+/// `file:line:column: subject: key = VALUE: what was expected`; collect() keeps it for finish().
+/// Keys that are absent leave the value as it was and return false.
 class TableReader {
   public:
     /// @param subject   names the table in errors: "[physics]", "body 3 \"crate\""
@@ -79,7 +80,10 @@ class TableReader {
     /// An array of points.
     bool read(std::string_view key, std::vector<Vec4>& values);
     bool read(std::string_view key, render::Color& value, Interval interval);
-    bool read(std::string_view key, Bivector& value);
+    /// @param example   what the error of a wrong type shows
+    bool read(std::string_view key, Bivector& value, const char* example);
+    /// One, or an array of them.
+    bool read(std::string_view key, std::vector<Bivector>& values, const char* example);
     bool read(std::string_view key, bool& value);
     bool read(std::string_view key, std::string& value);
     bool read(std::string_view key, std::int64_t& value, IntegerRange range);
@@ -108,12 +112,20 @@ class TableReader {
     [[noreturn]] void fail_here(std::string_view what) const;
     /// What fail() would say; empty where the key is absent.
     std::string remark(std::string_view key, std::string_view what);
-    /// Refuses unknown keys, then missing ones.
+    /// Runs `work`; its InputError is thrown by finish(), with all others of the table.
+    template <class Work>
+    void collect(const Work& work) {
+        errors_.collect(work);
+    }
+    bool has_errors() const { return !errors_.is_empty(); }
+    /// Refuses unknown keys, or else missing ones, and tells what was collected.
     void finish();
 
   private:
     const toml::node* find(std::string_view key);
+    std::string what_of(const toml::node& node, std::string_view key, std::string_view what) const;
     std::string text_at(const toml::node& node, std::string_view key, std::string_view what) const;
+    PlacedError unknown_key(const toml::key& key, const toml::node& node) const;
     [[noreturn]] void fail_at(const toml::node& node, std::string_view key,
                               std::string_view what) const;
     double real_of(const toml::node& node, std::string_view key, Interval interval,
@@ -127,12 +139,15 @@ class TableReader {
     void read_array(const toml::node& node, std::string_view key, double* values, std::size_t count,
                     Interval interval) const;
     bool read_reals(std::string_view key, double* values, std::size_t count, Interval interval);
+    void read_planes(const toml::node& node, std::string_view key, Bivector& value,
+                     const char* example) const;
 
     const toml::table& table_;
     const Origin& origin_;
     std::string subject_;
     std::vector<std::string_view> known_;
     std::vector<std::string> missing_;
+    ErrorList errors_;
 };
 
 }  // namespace tesserae::scenes

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <initializer_list>
 #include <sstream>
 
 #include "core/dynamics/motion_version.hpp"
@@ -222,9 +224,54 @@ void require_known_command(const CLI::App& app, const std::string& word) {
         if (!command->get_group().empty()) offered.push_back(command->get_name());
     }
     if (word.starts_with('-')) return;
+    if (word == "help")
+        throw InputError(
+            "unknown command \"help\": expected tesserae --help, or tesserae COMMAND "
+            "--help");
     const std::vector<std::string_view> names(offered.begin(), offered.end());
     throw InputError(fmt::format("unknown command {}: expected one of {}{}", toml_text(word),
                                  fmt::join(names, ", "), did_you_mean(word, names)));
+}
+
+/// The library's own message for a misspelt option names no neighbour.
+std::string meant_option(const CLI::App& app, const std::vector<std::string>& left) {
+    const CLI::App& command = app.get_subcommands().empty() ? app : *app.get_subcommands().front();
+    std::vector<std::string> offered;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) offered.push_back("--" + name);
+    const std::vector<std::string_view> names(offered.begin(), offered.end());
+    for (const std::string& word : left) {
+        const std::string option = word.substr(0, word.find('='));
+        if (!option.starts_with("--")) continue;
+        if (std::string hint = did_you_mean(option, names); !hint.empty()) return hint;
+        // The beginning of one: --out.
+        for (std::string_view name : names)
+            if (option.size() > 3 && name.starts_with(option))
+                return fmt::format("; did you mean \"{}\"?", name);
+    }
+    return {};
+}
+
+/// A folder or file that is written must not be named as something else is.
+void require_output_kind(const CommandLine& line) {
+    const std::string extension = line.output.extension().string();
+    const auto is_one_of = [&](std::initializer_list<std::string_view> known) {
+        return std::find(known.begin(), known.end(), extension) != known.end();
+    };
+    const bool is_other_file = is_one_of({".csv", ".exr", ".html", ".json", ".mov", ".mp4", ".ply",
+                                          ".png", ".svg", ".toml", ".txt", ".vtk"});
+    const auto refuse = [&](const char* what) {
+        throw InputError(fmt::format("-o {}: expected {}", line.output.string(), what));
+    };
+    const std::string& command = line.command;
+    if (command == "simulate" && is_other_file)
+        refuse("a file of HDF5: simulate writes a trajectory, FILE.h5");
+    if ((command == "run" || command == "render" || command == "submit") &&
+        (is_other_file || extension == ".h5") && !std::filesystem::is_directory(line.output))
+        refuse("a folder: frames are written as DIR/frames/NAME.0000.exr");
+    if (command == "export" && (is_other_file || extension == ".h5") &&
+        !std::filesystem::is_directory(line.output))
+        refuse("a folder: meshes are written into it, a frame a file");
 }
 
 void require_known_generator(const std::string& name) {
@@ -234,12 +281,9 @@ void require_known_generator(const std::string& name) {
                                  fmt::join(kGenerators, ", "), did_you_mean(name, kGenerators)));
 }
 
-}  // namespace
+constexpr const char* kAbout = "tesserae: rigid bodies in four dimensions, simulated and filmed";
 
-CommandLine parse_command_line(int argc, const char* const* argv) {
-    CommandLine line;
-    Typed typed;
-    CLI::App app("tesserae: rigid bodies in four dimensions, simulated and filmed", "tesserae");
+void add_commands(CLI::App& app, CommandLine& line, Typed& typed) {
     app.set_version_flag("--version",
                          fmt::format("tesserae {} (motion version {}, picture version {})",
                                      TESSERAE_VERSION, kMotionVersion, render::kPictureVersion));
@@ -293,8 +337,22 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         ->required()
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
 
-    add_farm(app, line, typed);
+    CLI::App& reference = *app.add_subcommand(
+        "reference", "every table and key of scene files: unit, default, range, meaning");
+    reference.add_option("topic", line.topic,
+                         "a table, key or shape, for example render, body.friction, hyperbox; or "
+                         "commands (default: all of scene files)");
 
+    add_farm(app, line, typed);
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+    CommandLine line;
+    Typed typed;
+    CLI::App app(kAbout, "tesserae");
+    add_commands(app, line, typed);
     if (argc > 1) require_known_command(app, argv[1]);
     try {
         app.parse(argc, argv);
@@ -304,16 +362,35 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         put(text.str());
         return line;
     } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{} (tesserae --help, or tesserae COMMAND --help, tells more)",
-                                     error.what()));
+        throw InputError(
+            fmt::format("{}{} (tesserae --help, or tesserae COMMAND --help, tells more)",
+                        error.what(), meant_option(app, app.remaining(true))));
     }
     const CLI::App& chosen = *app.get_subcommands().front();
     line.command = chosen.get_name();
+    if (const auto* frames = chosen.get_option_no_throw("--frames");
+        frames != nullptr && frames->count() > 0 && line.frames.empty())
+        throw InputError("--frames \"\": expected frames, for example 0-239x2,300");
+    require_output_kind(line);
     if (line.command == "generate") require_known_generator(line.generator);
     if (!typed.tiles.empty()) line.tiles = part_of(typed.tiles);
     append_overrides(chosen, typed, line.sets);
     if (line.threads == 0) line.threads = parallel::granted_cores();
     return line;
+}
+
+std::string commands_page() {
+    CommandLine line;
+    Typed typed;
+    CLI::App app(kAbout, "tesserae");
+    add_commands(app, line, typed);
+    std::string page =
+        "# Commands\n\nWhat every command does and which options it has. The program prints this "
+        "page: `tesserae reference commands`.\n";
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        page += fmt::format("\n## tesserae {}\n\n```text\n{}```\n", command->get_name(),
+                            command->help());
+    return page;
 }
 
 }  // namespace tesserae::scenes

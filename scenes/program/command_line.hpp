@@ -22,6 +22,7 @@ struct CommandLine {
     std::string frames;
     std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
     std::string generator;
+    std::string topic;                        ///< of the reference; empty: all of it
     std::uint64_t bodies = 0;                 ///< to generate
     std::string format;                       ///< export's: "ply" or "vtk"
     std::optional<double> tolerance, extent;  ///< export's [m]
@@ -37,5 +38,8 @@ struct CommandLine {
 /// Parses and checks the command line; prints help and version itself.
 /// @throws InputError   with the reason and where to find help
 CommandLine parse_command_line(int argc, const char* const* argv);
+
+/// What --help says of every command, as Markdown.
+std::string commands_page();
 
 }  // namespace tesserae::scenes

@@ -10,8 +10,10 @@
 #include "parallel/threads.hpp"
 #include "scenes/film/simulate.hpp"
 #include "scenes/generate/generate.hpp"
+#include "scenes/load/reference.hpp"
 #include "scenes/plan/cost.hpp"
 #include "scenes/plan/in_slice.hpp"
+#include "scenes/plan/overlaps.hpp"
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
@@ -99,6 +101,8 @@ void plan_command(const CommandLine& line) {
     parallel::Threads(line.threads).run([&] {
         cost = measure_cost(work.scene, work.plan, line.trajectory, frames,
                             measuring_seconds(work.scene));
+        for (std::string& warning : overlap_warnings(work.scene))
+            work.plan.warnings.push_back(std::move(warning));
         if (line.trajectory.empty() && work.plan.moves) return;
         slice = look_at_slice(work.scene, line.trajectory, frames);
         for (std::string& warning : slice->warnings)
@@ -123,10 +127,19 @@ void plan_command(const CommandLine& line) {
     put_json(json);
 }
 
+/// "energy, first row" as "energy_first_row".
+std::string json_key(std::string name) {
+    std::erase(name, ',');
+    std::replace(name.begin(), name.end(), ' ', '_');
+    return name;
+}
+
 void info_command(const CommandLine& line) {
     const auto facts = facts_about(line.file, line.threads);
     if (line.json) {
         Json json = Json::object();
+        for (const Fact& fact : facts) json[json_key(fact.name)] = fact.value;
+        // The names that the keys had, until version 0.3.
         for (const Fact& fact : facts) json[fact.name] = fact.value;
         // A file's texts need not be UTF-8.
         put_json(json);
@@ -167,6 +180,8 @@ int execute(const CommandLine& line) {
     if (line.command == "submit") submit_command(line);
     if (line.command == "join") status = join_command(line);
     if (line.command == "status") status = status_command(line);
+    if (line.command == "reference")
+        put(line.topic == "commands" ? commands_page() : reference(line.topic));
     if (line.command == "generate") put(generated_scene(line.generator, line.bodies));
     return status;
 }
@@ -179,6 +194,12 @@ int report_path(const fs::filesystem_error& error, const CommandLine& line) {
     tell(fmt::format("{}: {}", error.path1().string(), error.code().message()));
     const bool is_input = error.path1().string().starts_with(line.file.string());
     return is_input && !line.file.empty() ? 2 : 1;
+}
+
+/// A line for each of several errors.
+void tell_lines(std::string_view text) {
+    for (std::size_t end = 0; end != text.npos; text.remove_prefix(std::min(text.size(), end + 1)))
+        tell(text.substr(0, end = text.find('\n')));
 }
 
 }  // namespace
@@ -195,7 +216,7 @@ int program(int argc, const char* const* argv) {
     } catch (const Stopped&) {
         return report_stop();
     } catch (const InputError& error) {
-        tell(error.what());
+        tell_lines(error.what());
         return 2;
     } catch (const std::bad_alloc&) {
         tell("out of memory");

@@ -13,6 +13,7 @@
 #include "scenes/film/simulate.hpp"
 #include "scenes/plan/cost.hpp"
 #include "scenes/plan/in_slice.hpp"
+#include "scenes/plan/overlaps.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/shell_word.hpp"
@@ -95,10 +96,10 @@ class Filming {
     explicit Filming(const CommandLine& line)
         : line_(line),
           is_run_(line.command == "run"),
-          replace_(line.overwrite ? Replace::kAll
-                   : is_run_      ? Replace::kOtherLooks
-                                  : Replace::kNothing),
           folder_(line.draft ? line.output / "draft" : line.output),
+          replace_(line.overwrite || is_draft(folder_) ? Replace::kAll
+                   : is_run_                           ? Replace::kOtherLooks
+                                                       : Replace::kNothing),
           trajectory_(line.trajectory),
           work_(line_) {
         if (line.draft) {
@@ -118,7 +119,9 @@ class Filming {
         parallel::Threads(line_.threads).run([&] {
             const bool simulates =
                 trajectory_.empty() && (is_run_ ? scene().physics.has_value() : work_.plan.moves);
-            const bool is_new = !fs::exists(folder_ / "frames"), is_changed = tell_changed_look();
+            const bool is_changed = tell_changed_look();
+            // Another scene's frames are replaced: all is as at first.
+            const bool is_new = line_.overwrite || !fs::exists(folder_ / "frames");
             if (is_run_ && is_new) tell_cost();
             if (simulates) text = simulated(json["simulate"]) + "\n";
             if (is_run_ && (is_new || is_changed)) tell_slice();
@@ -141,6 +144,18 @@ class Filming {
 
   private:
     const Scene& scene() const { return work_.scene; }
+
+    /// The folder holds a draft, which costs seconds: it may be replaced.
+    bool is_draft(const fs::path& folder) const {
+        return line_.draft && fs::exists(folder / kSceneFile) && fs::exists(folder / kFramesFile);
+    }
+
+    /// Whether a trajectory of another motion may be replaced: where it was asked for, and where it
+    /// serves drafts alone.
+    bool may_replace_trajectory() const {
+        return line_.overwrite ||
+               (is_run_ && is_draft(folder_) && !fs::exists(line_.output / "frames"));
+    }
 
     std::vector<int> draft_frames() const {
         std::vector<int> frames = parse_frames("", frame_count(scene()));
@@ -166,6 +181,8 @@ class Filming {
         if (!line_.draft)
             for (const std::string& warning : work_.plan.warnings)
                 tell(fmt::format("warning: {}", warning));
+        for (const std::string& warning : overlap_warnings(scene()))
+            tell(fmt::format("warning: {}", warning));
         if (fs::exists(line_.output / "trajectory.h5")) return;
         constexpr double kMostSeconds = 1;
         Cost cost;
@@ -212,7 +229,7 @@ class Filming {
             const bool anew = is_run_ && served == Served::kByOtherSteps;
             if (anew)
                 tell(fmt::format("{}: lacks steps that the frames need: simulated again", file));
-            report = traced_simulate(line_, work_, trajectory_, line_.overwrite || anew);
+            report = traced_simulate(line_, work_, trajectory_, anew || may_replace_trajectory());
             text = simulated_text(report, trajectory_);
         }
         json = to_json(report);
@@ -246,8 +263,9 @@ class Filming {
 
     CommandLine line_;
     bool is_run_;
+    fs::path folder_;
     Replace replace_;
-    fs::path folder_, trajectory_;
+    fs::path trajectory_;
     Work work_;
     std::vector<int> frames_;
 };
@@ -257,6 +275,7 @@ class Filming {
 void simulate_command(const CommandLine& line) {
     const Work work(line);
     require_memory(work.plan, work.scene);
+    create_folder_of(line.output);
     stop_gracefully_on_signals();
     SimulateReport report;
     parallel::Threads(line.threads).run([&] {

@@ -3,6 +3,7 @@
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/compare/file_kind.hpp"
+#include "scenes/film/film_folder.hpp"
 #include "scenes/film/simulate.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
@@ -21,14 +22,27 @@ Scene viewed_scene(const CommandLine& line, bool is_trajectory) {
     return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
 }
 
+/// What view's own trajectories say that they were made by: these may be replaced, as pages may.
+constexpr const char* kCreator = "tesserae view";
+
+bool is_own(const fs::path& trajectory) {
+    if (!fs::exists(trajectory)) return false;
+    try {
+        return TrajectoryReader(trajectory).header().creator == kCreator;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 void view_command(const CommandLine& line) {
     const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
     const Scene scene = viewed_scene(line, is_trajectory);
     const Plan plan = make_plan(scene, line.threads);
-    require_page_of(scene, line.output, line.overwrite);
+    require_page(line.output, line.overwrite);
     require_memory(plan, scene);
+    create_folder_of(line.output);
     stop_gracefully_on_signals();
 
     fs::path trajectory = is_trajectory ? line.file : fs::path();
@@ -39,7 +53,8 @@ void view_command(const CommandLine& line) {
     parallel::Threads(line.threads).run([&] {
         if (!is_trajectory && plan.moves) {
             trajectory = fs::path(line.output).replace_extension(".h5");
-            simulate(scene, plan, trajectory, 0, line.overwrite, line.quiet);
+            simulate(scene, plan, trajectory, 0, line.overwrite || is_own(trajectory), line.quiet,
+                     nullptr, kCreator);
         }
         report = write_view(scene, trajectory, line.output, options);
     });

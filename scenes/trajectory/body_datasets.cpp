@@ -22,8 +22,8 @@ constexpr std::uint64_t kDescriptionChunkBytes = 1 << 20;
 
 std::string size_text(const Shape& shape) {
     std::string text;
-    const auto append = [&](const char* key, const auto& value, Rule) {
-        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, toml_text(value));
+    const auto append = [&](const Key& key, const auto& value, Rule) {
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key.name, toml_text(value));
     };
     std::visit([&](const auto& s) { s.parameters(s, append); }, shape);
     return printable(text, kMostSizeBytes);

@@ -30,6 +30,7 @@ std::uint64_t description_bytes(const BodyDescriptions& bodies);
 /// `steps_per_second` and `store_every` decide whether a file can be continued.
 struct TrajectoryHeader {
     std::string scene_name, source, effective, hash, motion_hash;
+    std::string creator = "tesserae";  ///< of the file; that of view's own: "tesserae view"
     std::string program_version;
     std::uint64_t bodies = 0;
     double steps_per_second = 0;

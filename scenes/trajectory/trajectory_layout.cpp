@@ -49,7 +49,7 @@ Handle create_column(hid_t parent, const std::string& name, hid_t type, const ch
     return column;
 }
 
-void create_h5md(const Handle& file, const std::string& version) {
+void create_h5md(const Handle& file, const std::string& name, const std::string& version) {
     const Handle root = hdf5::create_group(file.get(), "/h5md");
     const int h5md_version[2] = {1, 1}, module_version[2] = {1, 0};
     hdf5::add_attribute(root.get(), "version", H5T_STD_I32LE, H5T_NATIVE_INT, {2}, h5md_version);
@@ -57,11 +57,11 @@ void create_h5md(const Handle& file, const std::string& version) {
     // H5MD wants a name; a person's would make the bytes depend on who ran it.
     hdf5::add_text_attribute(author.get(), "name", "tesserae");
     const Handle creator = hdf5::create_group(root.get(), "creator");
-    hdf5::add_text_attribute(creator.get(), "name", "tesserae");
+    hdf5::add_text_attribute(creator.get(), "name", name);
     hdf5::add_text_attribute(creator.get(), "version", version);
     const Handle modules = hdf5::create_group(root.get(), "modules");
-    for (const char* name : {"tesserae", "units"}) {
-        const Handle module = hdf5::create_group(modules.get(), name);
+    for (const char* part : {"tesserae", "units"}) {
+        const Handle module = hdf5::create_group(modules.get(), part);
         hdf5::add_attribute(module.get(), "version", H5T_STD_I32LE, H5T_NATIVE_INT, {2},
                             module_version);
     }
@@ -214,7 +214,7 @@ std::array<const void*, kObservables.size()> observable_values(const StepFacts& 
 }
 
 void create_layout(const Handle& file, const TrajectoryHeader& header) {
-    create_h5md(file, header.program_version);
+    create_h5md(file, header.creator, header.program_version);
     create_bodies(file, header);
     create_observables(file);
     share_steps(file);
@@ -272,6 +272,7 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
     if (header.motion_version < 1)
         throw hdf5::Failure(std::string(kMotionVersionName) + ": is not a version from 1 on");
     const Handle creator = hdf5::open_group(file.get(), "/h5md/creator");
+    header.creator = hdf5::read_text_attribute(creator.get(), "name");
     header.program_version = hdf5::read_text_attribute(creator.get(), "version");
     return header;
 }

@@ -91,7 +91,7 @@ void require_room(const Scene& scene, const PoseRanges& ranges, std::size_t mome
 
 }  // namespace
 
-void require_page_of(const Scene& scene, const fs::path& file, bool overwrite) {
+void require_page(const fs::path& file, bool overwrite) {
     if (file.extension() != ".html")
         throw InputError(fmt::format("-o {}: expected a name that ends in .html", file.string()));
     if (overwrite || !fs::exists(file)) return;
@@ -100,10 +100,10 @@ void require_page_of(const Scene& scene, const fs::path& file, bool overwrite) {
     std::ifstream in(file, std::ios::binary);
     std::string beginning(2000, '\0');
     in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-    if (page_hash(beginning) != scene.hash)
-        throw InputError(
-            fmt::format("{}: is not the page of this scene; choose another name, or --overwrite",
-                        file.string()));
+    if (page_hash(beginning).empty())
+        throw InputError(fmt::format(
+            "{}: is no page that tesserae view has made; choose another name, or --overwrite",
+            file.string()));
 }
 
 ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::path& file,

@@ -27,10 +27,10 @@ struct ViewOptions {
     bool quiet = false;
 };
 
-/// Checks that `file` may be written: it ends in .html, and there is nothing, or a page of this
-/// scene.
+/// Checks that `file` may be written: it ends in .html, and there is nothing, or a page that was
+/// made by write_view(), which takes seconds to make again.
 /// @throws InputError   else, unless `overwrite`
-void require_page_of(const Scene& scene, const std::filesystem::path& file, bool overwrite);
+void require_page(const std::filesystem::path& file, bool overwrite);
 
 /// Writes one self-contained page that shows a scene's slice at any moment: the film's frames, or
 /// where the trajectory does not have the steps for them the steps that it stores.

@@ -15,8 +15,8 @@ namespace {
 using Real = long double;
 using RealVec4 = Eigen::Matrix<Real, 4, 1>;
 
-/// The camera of FORMATS.md built again, in long double: Gram-Schmidt, and right by solving for the
-/// direction across the other three.
+/// The camera of scenes/FORMATS.md built again, in long double: Gram-Schmidt, and right by solving
+/// for the direction across the other three.
 struct OracleCamera {
     RealVec4 origin, right, up, forward, fourth;
     Real half_height;

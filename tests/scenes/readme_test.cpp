@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <sstream>
 #include <vector>
 
 #include "tests/scenes/program/program.hpp"
@@ -25,13 +26,14 @@ std::vector<fs::path> pages() {
 }
 
 TEST(Readme, LinksLeadToFilesThatHoldWhatTheyName) {
-    const std::regex link(R"(\[([^\]]*)\]\(([^)#]+)\))");
+    // [label](path), [label](path#section), and [label]: path on a line of its own.
+    const std::regex link(R"(\[([^\]]*)\](?:\(([^)#]+)(?:#[^)]*)?\)|: ([^\s#]+)(?:#\S*)?\n))");
     const std::regex name(R"(`(?:\w+::)?(\w+)`)");
     int links = 0, names = 0;
     for (const fs::path& readme : pages()) {
         const std::string text = content(readme);
         for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
-            const std::string label = (*at)[1], target = (*at)[2];
+            const std::string label = (*at)[1], target = (*at)[(*at)[2].matched ? 2 : 3];
             if (target.starts_with("http")) continue;
             ++links;
             const fs::path file = readme.parent_path() / target;
@@ -47,12 +49,23 @@ TEST(Readme, LinksLeadToFilesThatHoldWhatTheyName) {
     EXPECT_GT(names, 50);
 }
 
+TEST(Readme, IsOnePage) {
+    const std::string text = content(kSource / "README.md");
+    EXPECT_LE(text.size(), 10'000U);
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 130);
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 160U) << line;
+    // What the project was like before is told by its commits.
+    EXPECT_FALSE(std::regex_search(text, std::regex(R"([Vv]ersion \d)")));
+}
+
 TEST(Readme, ItsSceneRuns) {
     const std::string text = content(kSource / "README.md");
-    const std::size_t begin = text.find("```toml\n") + 8, end = text.find("```", begin);
+    const std::string fence = "```toml fall.toml\n";
+    const std::size_t begin = text.find(fence) + fence.size(), end = text.find("```", begin);
     ASSERT_LT(end, text.size());
     const Folder folder("readme");
-    const auto scene = folder.write("readme.toml", text.substr(begin, end - begin));
+    const auto scene = folder.write("fall.toml", text.substr(begin, end - begin));
     const Outcome run = tesserae({"run", scene, "-o", folder.file("out"), "--size", "64x36",
                                   "--samples", "1", "--frames", "0,89"});
     EXPECT_EQ(run.status, 0) << run.err;

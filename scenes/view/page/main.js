@@ -193,9 +193,11 @@ class Page {
     const {times, frames_per_second: rate} = this.scene, {first} = this.poses.instant(this.time);
     byId("moment").value = this.time;
     byId("play").textContent = this.isPlaying ? "\u275a\u275a" : "\u25b6";
-    say("clock", `${this.time.toFixed(3)} s\n${first} of ${times.length}`);
+    say("clock", `${this.time.toFixed(3)} s\nframe ${first + 1} of ${times.length}`);
     const {chosen} = this.options, box = byId("rows-box"), {timeline} = this;
     byId("rows-height").style.height = `${timeline.height}px`;
+    // Beside the rows' scroll bar, so that the thumb stands over the playhead.
+    byId("transport").style.paddingRight = `${6 + box.offsetWidth - box.clientWidth}px`;
     const view = {width: box.clientWidth, height: Math.min(box.clientHeight, timeline.height),
                   scrolled: box.scrollTop, ratio: Math.min(devicePixelRatio, 2)};
     timeline.draw(view, this.time, chosen < 0 ? -1 : this.poses.id[chosen]);
@@ -254,7 +256,7 @@ class Page {
   }
 }
 
-/// What FORMATS promises to scripts, and `page` for tests.
+/// What scenes/FORMATS.md promises to scripts, and `page` for tests.
 function interfaceOf(page) {
   const idOf = (seen) => (seen === 0 ? 0 : page.poses.id[seen - 1] + 1);
   return {
@@ -271,6 +273,7 @@ function interfaceOf(page) {
     },
     size: (width, height) => {
       page.isFixed = true;
+      page.panel.setGhosts(false, 0);  // what tesserae render shows
       page.canvas.style.width = `${width}px`, page.canvas.style.height = `${height}px`;
       Object.assign(page.options, {width, height, margin: 1});
     },

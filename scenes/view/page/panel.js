@@ -23,6 +23,7 @@ class Slider {
     Object.assign(this.range, {type: "range", min: low, max: high, step: "any", ariaLabel: box.dataset.label});
     this.number = document.createElement("input");
     Object.assign(this.number, {type: "number", step: "any", ariaLabel: box.dataset.label});
+    label.title = box.title;
     box.append(label, this.number, unit, this.range);
     this.set(start);
     this.range.addEventListener("input", () => onInput(this.take(Number(this.range.value))));
@@ -75,6 +76,7 @@ class Panel {
     byId("copy-camera").addEventListener("click", () => this.copy(cameraToml(view.description()), "[camera] copied"));
     byId("copy-key").addEventListener("click", () =>
       this.copy(cameraKeyToml(view.description(), page.time), `[[camera.key]] of ${page.time.toFixed(3)} s copied`));
+    this.setGhosts(true, this.sliders.ghost.value);
     say("scene-name", page.scene.name);
     document.title = `${page.scene.name} - tesserae`;
   }

@@ -124,7 +124,8 @@ TEST(RotorProjection, MeetsBothConditionsAfterAnyDrift) {
 }
 
 TEST(RotorProjection, IsTheFormulaThroughTheSquareRootOfRTimesItsReverse) {
-    // FORMULAS 1: R R~ = a + b xyzw, u +- v = sqrt(a +- b), R <- (u - v xyzw)/(u^2 - v^2) R.
+    // core/FORMULAS.md 1: R R~ = a + b xyzw, u +- v = sqrt(a +- b), R <- (u - v xyzw)/(u^2 - v^2)
+    // R.
     RandomAlgebra random(317);
     for (int i = 0; i < 3000; ++i) {
         Rotor r = random.rotor();

@@ -21,7 +21,7 @@ struct Ellipsoid {
     friend bool operator==(const Ellipsoid& a, const Ellipsoid& b) { return a.half == b.half; }
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
-        visit("half", self.half, Rule::kPositive);
+        visit({"half", "m", "The half axes have these lengths."}, self.half, Rule::kPositive);
     }
 };
 

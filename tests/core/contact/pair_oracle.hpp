@@ -11,7 +11,7 @@
 #include "tests/core/shape/oracle.hpp"
 
 // Separations by another road than the pair functions: bounded shapes as zonotopes widened by a
-// radius (FORMULAS 3), in long double, every face of every dimension tried.
+// radius (core/FORMULAS.md 3), in long double, every face of every dimension tried.
 namespace tesserae {
 
 /// centre + sum t_k g_k with |t_k| <= 1, widened by rho.
@@ -164,7 +164,7 @@ inline long double true_separation(const Zonotope& a, const Zonotope& b) {
     return (overlap >= 0 ? -overlap : distance) - radii;
 }
 
-/// Of one zonotope from a point; exact inside too for a box (FORMULAS 3).
+/// Of one zonotope from a point; exact inside too for a box (core/FORMULAS.md 3).
 inline long double true_distance(const Zonotope& body, const LVec& point) {
     const long double outside = LeastNorm(point - body.centre, body.generators).norm() - body.rho;
     if (body.generators.size() < 4 || outside > 0) return outside;

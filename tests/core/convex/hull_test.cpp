@@ -48,7 +48,7 @@ TEST(Hull, OfRegularPolychoraHasTheirElementsAndContent) {
     }
 }
 
-/// Lowest along -y, as FORMATS.md says: a cell, a vertex or an edge.
+/// Lowest along -y, as scenes/FORMATS.md says: a cell, a vertex or an edge.
 TEST(Hull, OfRegularPolychoraStandAsTheyAreSaidTo) {
     using enum RegularPolychoron;
     const std::pair<RegularPolychoron, int> lowest[] = {

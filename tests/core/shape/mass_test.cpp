@@ -73,7 +73,7 @@ TYPED_TEST(ShapeMass, ScalesAsItsUnitsDo) {
         const TypeParam shape = random_shape<TypeParam>(random);
         TypeParam larger = shape;
         TypeParam::parameters(larger,
-                              [](const char*, auto& value, Rule) { scale_parameter(value, 8); });
+                              [](const Key&, auto& value, Rule) { scale_parameter(value, 8); });
         complete(larger);
         EXPECT_EQ(volume(larger), 4096 * volume(shape));
         EXPECT_EQ(second_moments(larger, 2), 128 * second_moments(shape, 1));
@@ -85,7 +85,7 @@ TYPED_TEST(ShapeMass, IsNeverNoNumber) {
         for (double second : {1e-300, 1e-150, 1.0, 1e150, 1e300}) {
             TypeParam shape;
             bool first = true;
-            TypeParam::parameters(shape, [&](const char*, auto& value, Rule) {
+            TypeParam::parameters(shape, [&](const Key&, auto& value, Rule) {
                 scale_parameter(value, first ? size : second);
                 first = false;
             });

@@ -80,10 +80,10 @@ LeastOfConvex least_of_convex(long double low, long double high, int sections,
     return least;
 }
 
-/// FORMULAS 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho. Its
-/// distance is found by descent on the t_k one at a time, not by the rooms' clamping. A polychoron
-/// is the hull of its points. A product of balls is what is in a ball along some axes and in
-/// another along the others.
+/// core/FORMULAS.md 3: a bounded shape is the points sum t_k g_k with |t_k| <= 1, widened by rho.
+/// Its distance is found by descent on the t_k one at a time, not by the rooms' clamping. A
+/// polychoron is the hull of its points. A product of balls is what is in a ball along some axes
+/// and in another along the others.
 struct Oracle {
     struct Ball {
         std::vector<int> axes;

@@ -57,7 +57,11 @@ std::string other(const Vec4&, Rule) { return kOtherVector; }
 std::string other(const Vec4&, Turn) { return kOtherVector; }
 std::string other(const Vec4&, Spacing) { return kOtherVector; }
 std::string other(const render::Color&, Interval) { return "[0.25, 0.5, 1]"; }
-std::string other(const Bivector&) { return "{ xy = 30, zw = 0.5 }"; }
+std::string other(const Bivector&, TurningPlanes) { return "{ xy = 30, zw = 0.5 }"; }
+std::string other(const std::vector<Bivector>&, Turns) {
+    return "[{ xy = 30, zw = 0.5 }, { yz = 20 }]";
+}
+std::string other(const render::Color&, AlbedoOf) { return "[0.25, 0.5, 1]"; }
 std::string other(bool value, FalseOrUnwritten) { return toml_text(!value); }
 std::string other(std::integral auto value, IntegerOrUnwritten) { return toml_text(value + 1); }
 std::string other(bool value) { return toml_text(!value); }
@@ -126,7 +130,8 @@ std::function<std::string(const std::string&, const std::string&)> set_in(const 
 void expect_all_written(const Table& table, const auto& list) {
     std::set<std::string> listed = table.lists_of_others;
     const std::string base = load_text(kScene).effective;
-    list([&](const char* key, const auto& value, const auto&... rule) {
+    list([&](const Key& listed_key, const auto& value, const auto&... rule) {
+        const std::string key = listed_key.name;
         listed.insert(key);
         std::vector<std::string> sets = {table.set(key, other(value, rule...))};
         if (table.also.contains(key)) sets.push_back(table.also.at(key));

@@ -57,6 +57,7 @@ kind = "mirror"
 [[material]]
 name = "glass"
 kind = "glass"
+albedo = [0.8, 0.8, 0.8]
 [[material]]
 name = "glow"
 emission = [1, 1, 1]

@@ -143,5 +143,24 @@ TEST_F(Change, ADraftSharesTheTrajectory) {
     EXPECT_EQ(run(out_, {}).json["render"]["rendered"], 0);
 }
 
+TEST_F(Change, ADraftReplacesItselfAndNoFilm) {
+    const std::vector<std::string> slow = {"--draft", "--set", "physics.gravity=[0, -5, 0, 0]"};
+    const int drafted = run(out_, {"--draft"}).json["render"]["rendered"];
+    // Other light, other motion, other bodies: all is made again, without being asked to.
+    EXPECT_EQ(run(out_, {"--draft", "--set", "render.exposure=1", "--set",
+                         "camera.field_of_view=33"})
+                  .json["render"]["rendered"],
+              drafted);
+    EXPECT_EQ(run(out_, slow).json["render"]["rendered"], drafted);
+    EXPECT_EQ(run(out_, {"--draft"}).json["simulate"]["first_step"], 0);
+    // The film's trajectory stays, and so does the film.
+    run(out_, {});
+    const auto made = trajectory_time();
+    std::vector<std::string> command = {"run", scene_, "-o", out_};
+    command.insert(command.end(), slow.begin(), slow.end());
+    EXPECT_EQ(tesserae(command).status, 2);
+    EXPECT_EQ(trajectory_time(), made);
+}
+
 }  // namespace
 }  // namespace tesserae::scenes::testing

@@ -224,15 +224,25 @@ TEST(Program, OutputsThatCannotBeWrittenExitWithOneAndNameThePath) {
     const Folder folder("unwritable");
     const auto scene = folder.write("drop.toml", small_scene(0.1));
     const auto blocked = folder.write("file", "a file where a folder is wanted");
-    for (const auto& arguments : std::vector<std::vector<std::string>>{
-             {"run", scene, "-o", blocked},
-             {"run", scene, "-o", blocked + "/below"},
-             {"simulate", scene, "-o", blocked + "/t.h5"},
-             {"simulate", scene, "-o", folder.file("missing/t.h5")}}) {
+    for (const auto& arguments :
+         std::vector<std::vector<std::string>>{{"run", scene, "-o", blocked},
+                                               {"run", scene, "-o", blocked + "/below"},
+                                               {"simulate", scene, "-o", blocked + "/t.h5"},
+                                               {"simulate", scene, "-o", blocked + "/below/t.h5"},
+                                               {"view", scene, "-o", blocked + "/page.html"}}) {
         const Outcome outcome = tesserae(arguments);
         EXPECT_EQ(outcome.status, 1) << outcome.err;
         EXPECT_NE(outcome.err.find(arguments.back()), std::string::npos) << outcome.err;
     }
+}
+
+TEST(Program, FoldersOfOutputsAreMade) {
+    const Folder folder("missing");
+    const auto scene = folder.write("drop.toml", small_scene(0.1));
+    EXPECT_EQ(tesserae({"simulate", scene, "-o", folder.file("a/b/t.h5")}).status, 0);
+    EXPECT_TRUE(fs::exists(folder.file("a/b/t.h5")));
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("c/page.html")}).status, 0);
+    EXPECT_TRUE(fs::exists(folder.file("c/page.html")));
 }
 
 /// A full disk, as far as one can be had without one: files larger than `bytes` cannot be written.

@@ -33,6 +33,7 @@ class Refused : public ::testing::Test {
     const Folder folder_{"refused"};
     const std::string scene_ = folder_.write("drop.toml", small_scene(0.1)),
                       text_ = folder_.write("text.txt", "some text"),
+                      plain_ = folder_.write("plain", "no folder"),
                       trajectory_ = folder_.file("drop.h5"), loop_ = folder_.file("loop-a");
 };
 
@@ -41,15 +42,15 @@ TEST_F(Refused, AnOutputLeavesNothing) {
     expect_refused({"simulate", scene_, "-o", trajectory_, "--set", "physics.gravity=[0,-9,0,0]"},
                    2, "drop.h5");
     expect_refused({"simulate", scene_, "-o", text_}, 2, "text.txt");
-    expect_refused({"simulate", scene_, "-o", none + "/a.h5"}, 1, "none/a.h5");
+    expect_refused({"simulate", scene_, "-o", text_ + "/a.h5"}, 1, "text.txt/a.h5");
     expect_refused({"view", scene_, "-o", trajectory_}, 2, "drop.h5");
-    expect_refused({"view", scene_, "-o", none + "/a.html"}, 1, "none/a.h5");
+    expect_refused({"view", scene_, "-o", text_ + "/a.html"}, 1, "text.txt/a.html");
     expect_refused({"plot", trajectory_, "-o", trajectory_}, 2, "drop.h5");
     expect_refused({"plot", trajectory_, "-o", none + "/a.svg"}, 1, "none/a.svg");
-    expect_refused({"export", trajectory_, "--format", "ply", "-o", text_}, 1, "text.txt");
-    expect_refused({"run", scene_, "-o", text_, "--quiet"}, 1, "text.txt");
-    expect_refused({"render", scene_, "-o", text_}, 1, "text.txt");
-    expect_refused({"submit", scene_, "-o", text_}, 1, "text.txt");
+    expect_refused({"export", trajectory_, "--format", "ply", "-o", plain_}, 1, "plain");
+    expect_refused({"run", scene_, "-o", plain_, "--quiet"}, 1, "plain");
+    expect_refused({"render", scene_, "-o", plain_}, 1, "plain");
+    expect_refused({"submit", scene_, "-o", plain_}, 1, "plain");
 }
 
 TEST_F(Refused, ALoopOfLinksIsTold) {
@@ -64,6 +65,29 @@ TEST_F(Refused, ALoopOfLinksIsTold) {
         expect_refused({command, scene_, "-o", loop_}, 1, reason);
     for (const std::string& said : {tesserae({"film", loop_}).err, tesserae({"join", loop_}).err})
         EXPECT_EQ(said.find("filesystem error"), std::string::npos) << said;
+}
+
+TEST_F(Refused, AnOutputIsNotNamedAsSomethingElse) {
+    for (const char* name : {"a.csv", "a.toml", "a.mp4", "a.png", "a.exr", "a.html"})
+        expect_refused({"simulate", scene_, "-o", folder_.file(name)}, 2, "trajectory, FILE.h5");
+    for (const char* name : {"a.mp4", "a.h5", "a.png"}) {
+        for (const char* command : {"run", "render", "submit"})
+            expect_refused({command, scene_, "-o", folder_.file(name)}, 2, "expected a folder");
+        expect_refused({"export", trajectory_, "--format", "ply", "-o", folder_.file(name)}, 2,
+                       "expected a folder");
+    }
+    expect_refused({"plot", trajectory_, "-o", folder_.file("a.csv")}, 2, ".svg or .png");
+}
+
+TEST_F(Refused, AMisspeltOptionGetsWhatWasMeant) {
+    const std::string out = folder_.file("out");
+    expect_refused({"run", scene_, "-o", out, "--sampels", "3"}, 2, "did you mean \"--samples\"?");
+    expect_refused({"run", scene_, "-o", out, "--sampels=3"}, 2, "did you mean \"--samples\"?");
+    expect_refused({"run", scene_, "--out", out}, 2, "did you mean \"--output\"?");
+    expect_refused({"simulate", scene_, "-o", trajectory_, "--thread", "2"}, 2, "\"--threads\"");
+    expect_refused({"help"}, 2, "tesserae --help");
+    expect_refused({"render", scene_, "-o", out, "--frames", ""}, 2, "expected frames");
+    expect_refused({"run", scene_, "-o", out, "--frames="}, 2, "--frames");
 }
 
 /// What no command could do is refused by all of them.

@@ -87,20 +87,41 @@ TEST(View, RefusesWhatItCannotDo) {
     EXPECT_EQ(name.status, 2);
     EXPECT_NE(name.err.find(".html"), std::string::npos) << name.err;
     EXPECT_EQ(tesserae({"view", folder.file("none.toml"), "-o", page}).status, 2);
-    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("none/a.html")}).status, 1);
 
-    // Another scene's page, or no page, is not replaced unasked.
-    ASSERT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
-    EXPECT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
-    const std::vector<std::string> other = {"view", scene,   "-o",
-                                            page,   "--set", "camera.field_of_view=20"};
-    EXPECT_EQ(tesserae(other).status, 2);
-    auto replaced = other;
-    replaced.push_back("--overwrite");
-    EXPECT_EQ(tesserae(replaced).status, 0);
+    // What is no page is not replaced unasked.
     folder.write("b.html", "mine");
     EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("b.html")}).status, 2);
     EXPECT_EQ(content(folder / "b.html"), "mine");
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("b.html"), "--overwrite"}).status, 0);
+}
+
+TEST(View, ReplacesItsOwnPageAndTrajectoryAndNoOther) {
+    const Folder folder("view-replace");
+    const auto scene = folder.write("drop.toml", small_scene(0.1));
+    const auto page = folder.file("a.html");
+    ASSERT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
+    const std::string first = content(page), moved = content(folder / "a.h5");
+    // Another look keeps the trajectory, another motion replaces both.
+    ASSERT_EQ(tesserae({"view", scene, "-o", page, "--set", "camera.field_of_view=20"}).status, 0);
+    EXPECT_NE(content(page), first);
+    EXPECT_EQ(content(folder / "a.h5"), moved);
+    const Outcome changed = tesserae({"view", scene, "-o", page, "--set", "physics.duration=0.05",
+                                      "--set", "physics.gravity=[0, -1, 0, 0]"});
+    ASSERT_EQ(changed.status, 0) << changed.err;
+    EXPECT_NE(content(folder / "a.h5"), moved);
+    ASSERT_EQ(tesserae({"view", scene, "-o", page}).status, 0);
+    EXPECT_EQ(content(page), first);
+    EXPECT_EQ(content(folder / "a.h5"), moved);
+
+    // A trajectory that simulate has made may have taken hours.
+    ASSERT_EQ(tesserae({"simulate", scene, "-o", folder.file("b.h5")}).status, 0);
+    const std::string kept = content(folder / "b.h5");
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("b.html")}).status, 0);
+    EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("b.html"), "--set",
+                        "physics.gravity=[0, -1, 0, 0]"})
+                  .status,
+              2);
+    EXPECT_EQ(content(folder / "b.h5"), kept);
 }
 
 }  // namespace

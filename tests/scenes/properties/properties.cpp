@@ -234,7 +234,7 @@ SmallScene off_axes(SmallScene scene) {
     for (BodyTable& table : scene.tables) {
         if (!is_bounded(table.shape)) continue;
         const Vec4 a = random.in_box(Vec4::Ones()), b = random.in_box(Vec4::Ones());
-        table.rotation += {a[0], a[1], a[2], a[3], b[0], b[1]};
+        table.rotation.front() += {a[0], a[1], a[2], a[3], b[0], b[1]};
     }
     return scene;
 }

@@ -51,7 +51,7 @@ std::vector<Simpler> changes_of(const SmallScene& scene) {
         if (!is_bounded(scene.tables[i].shape)) continue;
         changes.push_back(set(i, &BodyTable::velocity, Vec4(Vec4::Zero())));
         changes.push_back(set(i, &BodyTable::angular_velocity, Bivector{}));
-        changes.push_back(set(i, &BodyTable::rotation, Bivector{}));
+        changes.push_back(set(i, &BodyTable::rotation, std::vector<Bivector>(1)));
         changes.push_back([i](SmallScene& s) {
             BodyTable& table = s.tables[i];
             table.type.shape = table.shape = Hypersphere{bounding_radius(table.type.shape)};

@@ -106,7 +106,7 @@ class Drawing {
         }
         const bool straight =
             arrangement_ == Arrangement::kCloud ? chance(0.3) : arrangement_ == Arrangement::kStack;
-        if (!straight) table.rotation = random_bivector(180);
+        if (!straight) table.rotation.front() = random_bivector(180);
         is_stack() ? put_on_stack(table) : put_into_cloud(table);
         set_motion(table);
         add(std::move(table));
@@ -202,7 +202,7 @@ class Drawing {
     }
     /// Upon the last one, along y.
     void put_on_stack(BodyTable& table) {
-        const Rotor rotor = rotor_of(table.rotation);
+        const Rotor rotor = rotor_of(table.rotation.front());
         const double half = std::visit(
             [&](const auto& s) { return half_extents(s, to_matrix(rotor))[1]; }, table.type.shape);
         if (top_ == 0) top_ = -half_[1];
@@ -266,7 +266,7 @@ Bodies bodies_of(const SmallScene& scene) {
         bodies.type.push_back(static_cast<std::uint32_t>(bodies.types.size()));
         bodies.types.push_back(table.type);
         bodies.position.push_back(table.position);
-        bodies.rotor.push_back(exp(-0.5 * std::numbers::pi / 180 * table.rotation));
+        bodies.rotor.push_back(exp(-0.5 * std::numbers::pi / 180 * table.rotation.front()));
         bodies.velocity.push_back(table.velocity);
         bodies.angular_velocity.push_back(table.angular_velocity);
     }

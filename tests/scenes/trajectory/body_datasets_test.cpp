@@ -142,7 +142,7 @@ TEST_F(BodyDatasets, TheReadmesPythonNamesWhatAFileHas) {
     write(make_header(9), 3);
     const auto found = datasets_of(path_);
     EXPECT_NE(python.find("[\"particles/bodies\"]"), std::string::npos);
-    for (const char* name : {"mass", "name", "shape", "position/value", "velocity/value"}) {
+    for (const char* name : {"mass", "name", "position/value", "velocity/value"}) {
         EXPECT_NE(python.find(std::string("[\"") + name + "\"]"), std::string::npos) << name;
         EXPECT_TRUE(found.contains(std::string("particles/bodies/") + name)) << name;
     }

@@ -68,7 +68,7 @@ TEST(SoftSolver, BouncesToTheSameHeights) {
 }
 
 TEST(SoftSolver, SlidesAndRollsAsExactlyAsTheOther) {
-    // 3/4 of the speed once it rolls: FORMULAS, section 6.
+    // 3/4 of the speed once it rolls: core/FORMULAS.md 6.
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.3));
     add(bodies, sphere_type(0.5, 2, 0.3), {0, 0.5, 0, 0}, {0, 0, 2.16, 2.88});

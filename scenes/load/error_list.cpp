@@ -1,0 +1,45 @@
+#include "scenes/load/error_list.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+namespace tesserae::scenes {
+namespace {
+
+constexpr std::size_t kMostErrors = 20;
+
+std::string text_of(std::vector<PlacedError>& errors) {
+    std::stable_sort(errors.begin(), errors.end(), [](const PlacedError& a, const PlacedError& b) {
+        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    });
+    std::string text;
+    for (const PlacedError& error : errors) {
+        if (!text.empty()) text += '\n';
+        text += error.what();
+    }
+    if (errors.size() >= kMostErrors) text += "\nthe first errors; more may follow";
+    return text;
+}
+
+}  // namespace
+
+InputErrors::InputErrors(std::vector<PlacedError> all)
+    : InputError(text_of(all)), errors(std::move(all)) {}
+
+void ErrorList::add(const InputError& error) {
+    if (const auto* several = dynamic_cast<const InputErrors*>(&error)) {
+        for (const PlacedError& one : several->errors) add(one);
+    } else {
+        constexpr auto kNowhere = std::numeric_limits<std::size_t>::max();
+        const auto* placed = dynamic_cast<const PlacedError*>(&error);
+        errors_.push_back(placed ? *placed : PlacedError(error.what(), kNowhere, kNowhere));
+        if (errors_.size() >= kMostErrors) require_none();
+    }
+}
+
+void ErrorList::require_none() const {
+    if (!errors_.empty()) throw InputErrors(errors_);
+}
+
+}  // namespace tesserae::scenes
