@@ -51,7 +51,7 @@ Vec4 Microfacet::visible_normal(const Vec4& out, Eigen::Vector3d p) const {
 
     // Lift it to the hemisphere and squeeze it back.
     const double depth = std::sqrt(std::max(0.0, 1 - p.squaredNorm()));
-    Vec4 m = frame.to_world({p.x(), p.y(), p.z(), depth});
+    Vec4 m = frame.to_world(Vec4(p.x(), p.y(), p.z(), depth));
     m.head<3>() *= alpha_;
     m[3] = std::max(m[3], 0.0);
     return m.normalized();

@@ -61,3 +61,12 @@ awk '/^```toml fall.toml/ { on = 1; next } /^```/ { on = 0 } on' "$manual/../../
 ffmpeg -hide_banner -loglevel error -y -i fall/preview/fall.0012.png -i fall/preview/fall.0038.png \
     -i fall/preview/fall.0089.png -filter_complex "hstack=3,scale=1440:-1:flags=area" \
     -q:v 3 -frames:v 1 -update 1 "$manual/fall.jpg"
+
+# The page of view, where there is a chromium.
+if command -v chromium >/dev/null; then
+    "$program" view "$manual/../gallery/first.toml" -o view.html "${options[@]}" >&2
+    echo '<script>tesserae.ready.then(() => tesserae.page.goTo(1.292))</script>' >> view.html
+    chromium --headless --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader --hide-scrollbars \
+        --window-size=1120,727 --virtual-time-budget=8000 --screenshot="$folder/view.png" "file://$folder/view.html" 2>/dev/null
+    ffmpeg -hide_banner -loglevel error -y -i view.png -q:v 3 -frames:v 1 -update 1 "$manual/view.jpg"
+fi

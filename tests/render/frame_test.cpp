@@ -22,6 +22,8 @@
 
 #include "core/error.hpp"
 #include "render/camera/camera.hpp"
+#include "render/file/preview_file.hpp"
+#include "tests/content.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -275,6 +277,48 @@ TEST(Frame, PreviewIsTheBoxFilteredPicture) {
                 // unit).
                 ASSERT_NEAR(codes[static_cast<std::size_t>(3 * (1334 * y + x) + c)], code, 0.504);
             }
+}
+
+/// Straight alpha, as PNG has it: laid over black in linear light it is the image's own colour.
+TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
+    TestScene scene = busy_scene();
+    scene.settings.sky = Sky::kTransparent;
+    const Folder folder;
+    render(scene, folder / "a.exr", folder / "a.png");
+    const Image image = read_exr(folder / "a.exr");
+    png_image png = {};
+    png.version = PNG_IMAGE_VERSION;
+    ASSERT_TRUE(png_image_begin_read_from_file(&png, (folder / "a.png").c_str()));
+    EXPECT_TRUE(png.format & PNG_FORMAT_FLAG_ALPHA);
+    png.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> codes(PNG_IMAGE_SIZE(png));
+    ASSERT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
+    int edges = 0, clear = 0;
+    for (int y = 0; y < 90; ++y)
+        for (int x = 0; x < 150; ++x) {
+            const auto* code = &codes[static_cast<std::size_t>(4 * (150 * y + x))];
+            const double alpha = image.at("A", x, y);
+            ASSERT_NEAR(code[3], 255 * alpha, 0.501);
+            edges += alpha > 0 && alpha < 1, clear += alpha == 0;
+            for (int c = 0; c < 3; ++c) {
+                const double colour =
+                    alpha > 0
+                        ? std::min(1.0,
+                                   std::min(1.f, image.at(std::string(1, "RGB"[c]), x, y)) / alpha)
+                        : 0;
+                const double expected =
+                    255 * (colour <= 0.0031308 ? 12.92 * colour
+                                               : 1.055 * std::pow(colour, 1 / 2.4) - 0.055);
+                // Steps of 2^-20 of colour and coverage, the latter at least a quarter.
+                ASSERT_NEAR(code[c], expected, 0.53) << x << " " << y;
+            }
+        }
+    EXPECT_GT(edges, 50);
+    EXPECT_GT(clear, 100);
+    // From the image the same bytes are made again.
+    ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings.exposure, scene.settings.sky,
+                               folder / "b.png"));
+    EXPECT_EQ(testing::content(folder / "b.png"), testing::content(folder / "a.png"));
 }
 
 TEST(Frame, ExtremeExposuresGiveBlackOrWhite) {

@@ -272,8 +272,9 @@ function interfaceOf(page) {
       page.changed();
     },
     size: (width, height) => {
+      // A script sees at first what tesserae render shows.
+      if (!page.isFixed) page.panel.setGhosts(false, 0);
       page.isFixed = true;
-      page.panel.setGhosts(false, 0);  // what tesserae render shows
       page.canvas.style.width = `${width}px`, page.canvas.style.height = `${height}px`;
       Object.assign(page.options, {width, height, margin: 1});
     },

@@ -62,6 +62,16 @@ position = [-9, 0, 0, 0]
               (json::array({row("a", 24, 96, 96, 24), row("b", 15, 30, 23, 8)})));
     EXPECT_NE(tesserae({"info", scene}).out.find("b: 15 vertices, 30 edges, 23 faces, 8 cells"),
               std::string::npos);
+    // Every name has a key without blanks; the old names stay beside them until version 0.3.
+    const auto all = nlohmann::json::parse(info.out);
+    EXPECT_EQ(all["movable_bodies"], all["movable bodies"]);
+    for (const auto& [key, value] : all.items())
+        if (key.find(' ') != std::string::npos) {
+            std::string plain = key;
+            std::erase(plain, ',');
+            std::replace(plain.begin(), plain.end(), ' ', '_');
+            EXPECT_EQ(all[plain], value) << key;
+        }
 }
 
 TEST(Info, SaysHowWellATrajectoryKeepsWhatMotionKeeps) {

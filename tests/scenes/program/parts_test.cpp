@@ -46,6 +46,7 @@ TEST(Parts, JoinToTheBytesOfASingleRun) {
         {{"--integrator", "path", "--set",
           "render.channels=[\"color\", \"cryptomatte\", \"light\"]"},
          {5}},
+        {{"--set", "render.sky=\"transparent\""}, {3}},
         {{"--size", "2000x20", "--samples", "1"}, {3}}};
     int number = 0;
     for (const auto& [every, counts] : settings) {
