@@ -120,6 +120,7 @@ TEST_F(Damage, ACutImageHasNoSummary) {
 
 /// The film is another when its previews are, whatever the clock said.
 TEST_F(Damage, AFilmOfOtherPreviewsIsMadeAgain) {
+    const WithFilms films;
     ASSERT_EQ(run({}).status, 0);
     const std::string movie = out_ + "/drop.mp4", first = content(movie);
     for (const int hours : {-48, 48}) {
@@ -136,6 +137,7 @@ TEST_F(Damage, AFilmOfOtherPreviewsIsMadeAgain) {
 }
 
 TEST_F(Damage, AFilmTellsWhatItLacks) {
+    const WithFilms films;
     const auto says = [&](const std::string& words) {
         const Outcome film = tesserae({"film", out_});
         EXPECT_EQ(film.status, 0) << film.err;

@@ -25,6 +25,8 @@ nlohmann::json stream_of(const std::string& file) {
 }
 
 class Movie : public ::testing::Test {
+    const WithFilms films_;
+
   protected:
     Outcome run(std::vector<std::string> more, const char* command = "run") const {
         std::vector<std::string> words = {command, scene_, "-o", out_, "--samples", "1"};

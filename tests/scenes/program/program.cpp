@@ -8,12 +8,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
 namespace tesserae::scenes::testing {
 
 namespace fs = std::filesystem;
+
+namespace {
+int films = 0;
+}
+
+WithFilms::WithFilms() { ++films; }
+WithFilms::~WithFilms() { --films; }
 
 Outcome tesserae(const std::vector<std::string>& arguments, int signal, int milliseconds) {
     const Folder folder("program");
@@ -30,6 +38,7 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());
         argv.push_back(nullptr);
+        if (films == 0 && arguments.front() == "run") setenv("PATH", "/nonexistent", 1);
         execv(argv[0], argv.data());
         _exit(127);
     }

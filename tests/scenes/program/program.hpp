@@ -15,6 +15,15 @@ struct Outcome {
     std::string out, err;
 };
 
+/// While one lives `tesserae run` finds ffmpeg, which takes longer than all else in a small run.
+class WithFilms {
+  public:
+    WithFilms();
+    ~WithFilms();
+    WithFilms(const WithFilms&) = delete;
+    WithFilms& operator=(const WithFilms&) = delete;
+};
+
 /// Runs the program to its end; sends `signal` after `milliseconds` if that is not 0.
 Outcome tesserae(const std::vector<std::string>& arguments, int signal = 0, int milliseconds = 0);
 

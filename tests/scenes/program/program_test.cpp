@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(Program, RunMakesTrajectoryFramesPreviewsAndReport) {
+    const WithFilms films;
     const Folder folder("run");
     const auto scene = folder.write("drop.toml", small_scene(0.15));
     const Outcome run = tesserae({"run", scene, "-o", folder.file("out"), "--json"});
