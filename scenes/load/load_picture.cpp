@@ -17,11 +17,11 @@ void load_materials(TableReader& root, const Origin& origin, Scene& scene, Effec
             render::Material& material = scene.materials.emplace_back();
             material_keys(material, ReadKeys{reader});
             const auto number = static_cast<std::uint32_t>(i + 1);
-            const auto [known, is_new] = numbers.emplace(material.name, number);
-            if (!is_new && !material.name.empty())
+            const auto known = numbers.emplace(material.name, number);
+            if (!known.second && !material.name.empty())
                 reader.collect([&] {
                     reader.fail("name", fmt::format("is the name of material {} already",
-                                                    known->second - 1));
+                                                    known.first->second - 1));
                 });
             reader.finish();
             out.table("[[material]]");

@@ -37,7 +37,7 @@ std::vector<Bounds> bounds_of(const Simulation& simulation) {
 /// How deep two bodies are in each other [m]; 0: they are not.
 double depth_of(const Bodies& bodies, BodyId a, BodyId b, std::vector<Contact>& contacts) {
     contacts.clear();
-    const auto pose = [&](BodyId id) { return Pose(bodies.position[id], bodies.rotor[id]); };
+    const auto pose = [&](BodyId id) { return Pose{bodies.position[id], bodies.rotor[id]}; };
     find_contacts(a, bodies.type_of(a).shape, pose(a), b, bodies.type_of(b).shape, pose(b), 0,
                   contacts);
     double depth = 0;
