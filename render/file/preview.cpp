@@ -130,12 +130,13 @@ std::vector<std::uint8_t> Preview::codes() const {
             const int rows = std::min(factor_, h - y * factor_);
             const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                                    static_cast<std::size_t>(x);
-            const double all = kOne * columns * rows, covered = sums_[at][3];
-            // Where nothing is the colour is black, whatever a lamp's disc has left there.
+            const double all = kOne * columns * rows;
+            const Sum& sum = sums_[at];
+            const double covered = sum[3] > 0 ? sum[3] : std::max({sum[0], sum[1], sum[2]});
             const double whole = channels == 3 ? all : covered;
             for (std::size_t i = 0; i < 3; ++i)
                 pixels[channels * at + i] =
-                    whole > 0 ? srgb_code(std::min(sums_[at][i] / whole, 1.0)) : 0;
+                    whole > 0 ? srgb_code(std::min(sum[i] / whole, 1.0)) : 0;
             if (channels == 4)
                 pixels[channels * at + 3] =
                     static_cast<std::uint8_t>(std::lround(255 * covered / all));

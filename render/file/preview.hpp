@@ -15,7 +15,7 @@ namespace tesserae::render {
 /// it at most 1920 wide and 4096 high. Values are clamped to [0, 1] after exposure and summed as
 /// integers, so that neither the order nor the size of the tiles shows in the bytes. Where the sky
 /// is transparent the picture has the bodies' coverage as its alpha, and their own colour, not
-/// premultiplied.
+/// premultiplied; the disc of a lamp, which has no coverage, is as opaque as it is bright.
 class Preview {
   public:
     /// @param exposure   [stops]

@@ -300,7 +300,12 @@ std::vector<std::string> ffmpeg_words(double frames_per_second, render::Sky sky)
 }  // namespace
 
 std::vector<int> preview_numbers(const Scene& scene, const fs::path& folder) {
-    return numbers_in(folder / "preview", scene, ".png");
+    std::vector<int> numbers = numbers_in(folder / "preview", scene, ".png");
+    if (!fs::exists(folder / kFramesFile)) return numbers;
+    // A draft's film has its frames, whatever others are there.
+    const std::vector<int> wanted = wanted_frames(scene, folder);
+    std::erase_if(numbers, [&](int n) { return !std::ranges::binary_search(wanted, n); });
+    return numbers;
 }
 
 fs::path movie_file(const Scene& scene, const fs::path& folder) {

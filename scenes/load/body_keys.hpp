@@ -66,7 +66,8 @@ void physics_keys(auto& self, const auto& visit) {
            "tall stacks and heavy loads better."},
           self.iterations, IntegerRange{1, 10000});
     visit({"tolerance", "m/s",
-           "Sweeps end once one changes no velocity by more than this; at 0 all are done."},
+           "The solver stops once a sweep has changed no velocity by more than this; 0 makes it do "
+           "all sweeps."},
           self.tolerance,
           RealOrUnwritten{interval_of(Rule::kNonNegative), PhysicsSettings{}.tolerance});
     visit({"substeps", "",
@@ -164,7 +165,7 @@ struct MaterialName {
     const MaterialNumbers& materials;
 
     void read(TableReader& reader, const char* key, std::string& name) const {
-        if (!reader.read(key, name) || materials.contains(name)) return;
+        if (!reader.read(key, name) || materials.contains(name) || !materials.is_complete) return;
         std::vector<std::string_view> names;
         for (const auto& [known, number] : materials) names.push_back(known);
         std::sort(names.begin(), names.end());
@@ -191,8 +192,8 @@ void placing_keys(auto& self, const auto& visit) {
     visit({"position", "m", "The centre of mass, or a lattice's centre, is here at time 0."},
           self.position, Rule::kFinite);
     visit({"rotation", "deg",
-           "The body is turned by these angles at time 0: all planes of a table at once, the "
-           "tables of an array one after the other; positive xy turns x toward y."},
+           "The body is turned by these angles at time 0; a table is one turn in all its planes, "
+           "an array of tables is one turn after the other; positive xy turns x toward y."},
           self.rotation, Turns{});
     visit({"velocity", "m/s", "The centre of mass moves so at time 0."}, self.velocity,
           Rule::kFinite);
@@ -226,8 +227,8 @@ void surface_keys(auto& self, const auto& visit, const MaterialNumbers& material
            "theirs."},
           self.type.restitution, Interval{0, 1});
     visit({"fixed", "",
-           "Contacts do not change these; with a velocity the body moves at it, and nothing stops "
-           "it."},
+           "Contacts cannot change what is named here; with a velocity the body moves at it, and "
+           "nothing stops it."},
           self.type, Flags<BodyType>{kFixed});
     visit({"material", "", "The body looks as the material of this name says.", "a grey of 0.8"},
           self.material, MaterialName{materials});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string_view>
 #include <tuple>
 
 namespace tesserae::scenes {
@@ -18,7 +19,8 @@ std::string text_of(std::vector<PlacedError>& errors) {
         if (!text.empty()) text += '\n';
         text += error.what();
     }
-    if (errors.size() >= kMostErrors) text += "\nthe first errors; more may follow";
+    if (errors.size() >= kMostErrors)
+        text += fmt::format("\n{} errors are told at once; there may be more", kMostErrors);
     return text;
 }
 
@@ -33,6 +35,10 @@ void ErrorList::add(const InputError& error) {
     } else {
         constexpr auto kNowhere = std::numeric_limits<std::size_t>::max();
         const auto* placed = dynamic_cast<const PlacedError*>(&error);
+        const std::string_view what = error.what();
+        // Several lists may have been told of one error.
+        if (std::ranges::any_of(errors_, [&](const PlacedError& e) { return e.what() == what; }))
+            return;
         errors_.push_back(placed ? *placed : PlacedError(error.what(), kNowhere, kNowhere));
         if (errors_.size() >= kMostErrors) require_none();
     }

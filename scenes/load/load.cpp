@@ -65,10 +65,13 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     errors.collect([&] { load_name(root, origin, scene, out); });
     errors.collect([&] { load_physics(root, origin, scene, out); });
     errors.collect([&] { load_materials(root, origin, scene, out, materials); });
+    // [[materials]] may hold them.
+    materials.is_complete = materials.is_complete && errors.is_empty();
     errors.collect([&] { load_bodies(root, origin, text, materials, overrides, scene, out); });
     errors.collect([&] { load_camera(root, origin, scene, out); });
     errors.collect([&] { load_lights(root, origin, scene, out); });
     errors.collect([&] { load_render(root, origin, scene, out); });
+    errors.collect([&] { root.finish(); });
     errors.require_none();
     require_view(scene, origin);
     // Both refuse what no command could do.

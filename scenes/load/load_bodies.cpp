@@ -63,7 +63,9 @@ void read_parameters(TableReader& reader, Polychoron& shape) {
     if (reader.read("vertices", shape.vertices)) {
         shape.regular = RegularPolychoron::kNone;
         for (const char* key : {"regular", "radius"})
-            if (reader.has(key)) reader.fail(key, "there are vertices too; expected only them");
+            if (reader.has(key))
+                reader.collect(
+                    [&] { reader.fail(key, "there are vertices too; expected only them"); });
         return;
     }
     constexpr auto kNames = [] {
@@ -179,7 +181,8 @@ class BodyLoader {
         reader.finish();
 
         // Material 0 is the grey of those that name none.
-        if (!body.material.empty()) body.appearance.material = materials_.at(body.material);
+        if (const auto material = materials_.find(body.material); material != materials_.end())
+            body.appearance.material = material->second;
         body.type.shape = completed(reader, body.shape);
         if (bounded) set_mass(reader, body);
         if (is_lattice)

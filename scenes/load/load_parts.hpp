@@ -17,7 +17,9 @@ void load_name(TableReader& root, const Origin& origin, Scene& scene, EffectiveW
 void load_physics(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 
 /// Index of each material by name. Material 0 is the grey of bodies that name none.
-using MaterialNumbers = std::unordered_map<std::string, std::uint32_t>;
+struct MaterialNumbers : std::unordered_map<std::string, std::uint32_t> {
+    bool is_complete = true;  ///< false: a table has errors, and may have another name
+};
 /// @param numbers   gets them, also where an error is thrown: bodies may name what has errors
 void load_materials(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out,
                     MaterialNumbers& numbers);

@@ -27,6 +27,7 @@ void load_materials(TableReader& root, const Origin& origin, Scene& scene, Effec
             out.table("[[material]]");
             material_keys(material, WriteKeys{out});
         });
+    numbers.is_complete = errors.is_empty();
     errors.require_none();
 }
 

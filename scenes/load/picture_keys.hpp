@@ -132,7 +132,7 @@ void light_place_keys(auto& self, const auto& visit) {
               self.direction,
               Required{"expected four numbers: the way that the light travels", Rule::kNonZero});
         visit({"angle", "deg",
-               "The sun's disc is seen under twice this angle; 0 makes hard shadows."},
+               "The sun's disc has this half-angle, seen from the scene; 0 makes hard shadows."},
               self.angle, Interval{0, 30});
     }
     if (self.type == LightType::kPoint || self.type == LightType::kSphere)
@@ -322,8 +322,8 @@ void ray_keys(auto& self, const auto& visit) {
            "scene."},
           self.integrator, Names{kPictureIntegrators});
     visit({"bounces", "",
-           "Light is followed by way of so many surfaces where integrator is path; 0 is light "
-           "straight from what glows."},
+           "Light is followed by way of so many surfaces; direct follows it through mirrors and "
+           "glass only."},
           self.bounces, IntegerRange{0, kMaxBounces});
     visit({"clamp_indirect", "",
            "A sample gets at most this radiance by way of two surfaces or more, which removes "

@@ -191,7 +191,12 @@ void add_shapes(std::vector<Part>& parts, std::index_sequence<I...>) {
 
 Table body_table() {
     const BodyTable body;
-    Table table{"body", "[[body]]", "A body, with the sizes of its shape.", {}};
+    Table table{"body",
+                "[[body]]",
+                "A body, with the sizes of its shape. A hyperplane never moves: it takes no "
+                "position, rotation, "
+                "velocity or mass.",
+                {}};
     table.parts.push_back(part_of("", [&](const DescribeKeys& visit) {
         name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
         mass_keys(body, visit), surface_keys(body, visit, MaterialNumbers());
@@ -242,7 +247,8 @@ std::vector<Table> all_tables() {
         body_table(),
         {"lattice",
          "[[lattice]]",
-         "A grid of equal bodies: all keys of a body, whose position is the grid's centre, and "
+         "A grid of equal bodies: all keys of a body but a hyperplane, whose position is the "
+         "grid's centre, and "
          "these.",
          {part_of("", [&](Visit visit) { lattice_keys(lattice, visit, kMaxBodies); })}},
         {"camera",
@@ -298,7 +304,7 @@ A scene file is [TOML](https://toml.io). This page lists all that it can hold. T
 - An integer may stand for a real. Every key has a default unless the table says *required*. An unknown key is an error.
 - `--set TABLE.KEY=VALUE` on the command line replaces one key. Bodies, lattices and materials are reached by name and lights by
   number: `--set body.NAME.mass=2`, `--set light.0.strength=3`.
-- No real is larger than 10^15, and what must be > 0 is at least 10^-15.
+- No real is larger than 10^15, and what must be > 0 is at least 10^-15; only masses may be.
 )";
 
 /// The rows of a key, each with the part that it belongs to; empty: there is no such key.
@@ -311,10 +317,31 @@ std::string markdown_of_key(const Table& table, std::string_view key) {
     return text;
 }
 
+/// A key by its name alone, in every table and part that has it; after a dot, in those of a part.
+std::string markdown_of_bare_key(const std::vector<Table>& tables, std::string_view topic) {
+    const auto dot = topic.rfind('.');
+    const std::string_view key = dot == topic.npos ? topic : topic.substr(dot + 1);
+    const std::string part_name =
+        dot == topic.npos ? "" : fmt::format("\"{}\"", topic.substr(0, dot));
+    std::string text;
+    for (const Table& table : tables)
+        for (const Part& part : table.parts) {
+            if (part.heading.find(part_name) == std::string::npos) continue;
+            const std::string heading =
+                table.header + (part.heading.empty() ? "" : ", ") + part.heading;
+            for (const Row& row : part.rows)
+                if (row.key == key) text += (text.empty() ? "" : "\n") + markdown({heading, {row}});
+        }
+    return text;
+}
+
 }  // namespace
 
 std::string reference(std::string_view topic) {
     const std::vector<Table> tables = all_tables();
+    // [[body]] as body.
+    while (topic.starts_with('[') && topic.ends_with(']'))
+        topic = topic.substr(1, topic.size() - 2);
     if (topic.empty()) {
         std::string text(kIntroduction);
         for (const Table& table : tables) text += "\n" + markdown(table);
@@ -342,6 +369,7 @@ std::string reference(std::string_view topic) {
         if (std::string text = markdown_of_key(table, topic.substr(dot + 1)); !text.empty())
             return text;
     }
+    if (std::string text = markdown_of_bare_key(tables, topic); !text.empty()) return text;
     const std::vector<std::string_view> names(known.begin(), known.end());
     std::string hint = did_you_mean(topic, names);
     if (hint.empty()) {

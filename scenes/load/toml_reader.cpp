@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
+#include "scenes/load/syntax_hint.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -19,27 +20,6 @@ std::string place_of(const toml::source_region& region, const Origin& origin) {
     if (!region.begin) return origin.place;
     return fmt::format("{}:{}:{}", origin.place, region.begin.line + origin.lines_before,
                        region.begin.column);
-}
-
-/// What a syntax error most likely comes from.
-std::string syntax_hint(const toml::parse_error& error, std::string_view text) {
-    const std::string_view what = error.description();
-    const auto says = [&](std::string_view part) { return what.find(part) != what.npos; };
-    // The line that the parser stopped in, to see whether it stopped at its end.
-    for (auto line = error.source().begin.line; line > 1 && !text.empty(); --line)
-        text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-    const auto length = std::min(text.find_first_of("\r\n"), text.size());
-    const bool at_end = error.source().begin.column > length;
-    if (says("string") && (says("end-of-file") || (says("control characters") && at_end)))
-        return "; the string has no closing quote";
-    if (says("could not determine value type"))
-        return "; expected a number, true or false, a \"string\" in quotes, an [array] or a "
-               "{ key = table }";
-    if (!says("cannot redefine existing table")) return {};
-    for (const char* table : {"body", "lattice", "material", "light"})
-        if (says(fmt::format("'{}'", table)))
-            return fmt::format("; there may be several [[{}]], each with two brackets", table);
-    return "; expected one table of this name, with all its keys";
 }
 
 /// An error with the place that it names.
@@ -99,7 +79,7 @@ std::string listed(std::span<const std::string_view> names) {
 }
 
 std::string expected_text(Interval i) {
-    const bool low = i.low > -kLargest, high = i.high < kLargest;
+    const bool low = i.low != -kLargest, high = i.high != kLargest;
     const std::string at_least =
         i.low == kSmallest ? "> 0"
                            : fmt::format("{} {}", i.low_open ? ">" : ">=", toml_text(i.low));
@@ -130,7 +110,8 @@ TomlDocument::TomlDocument(std::string_view text, Origin origin) : origin_(std::
     } catch (const toml::parse_error& error) {
         throw error_at(error.source(), origin_,
                        fmt::format("not valid TOML: {}{}", printable(error.description(), 300),
-                                   syntax_hint(error, text)));
+                                   syntax_hint(error.description(), error.source().begin.line,
+                                               error.source().begin.column, text)));
     }
 }
 
@@ -220,7 +201,8 @@ double TableReader::real_of(const toml::node& node, std::string_view key, Interv
     else
         fail_at(node, key, fmt::format("wrong type; {}", expected));
     if (!is_inside(value, interval)) {
-        const bool too_large = std::isfinite(value) && std::abs(value) > kLargest;
+        const bool too_large =
+            std::isfinite(value) && std::abs(value) > kLargest && interval.high == kLargest;
         const bool too_small = value > 0 && value < kSmallest && interval.low == kSmallest;
         fail_at(node, key,
                 too_large   ? fmt::format("{}, at most {} in size", expected, toml_text(kLargest))
@@ -354,7 +336,9 @@ bool TableReader::read(std::string_view key, std::vector<Bivector>& values, cons
     values.assign(array == nullptr ? 1 : array->size(), Bivector());
     if (array == nullptr) read_planes(*node, key, values.front(), example);
     for (std::size_t i = 0; array != nullptr && i < values.size(); ++i)
-        read_planes(*array->get(i), fmt::format("{}[{}]", key, i), values[i], example);
+        collect([&] {
+            read_planes(*array->get(i), fmt::format("{}[{}]", key, i), values[i], example);
+        });
     return true;
 }
 
@@ -434,12 +418,16 @@ std::vector<const toml::table*> TableReader::tables(std::string_view key) {
     std::vector<const toml::table*> all;
     const toml::node* node = find(key);
     if (node == nullptr) return all;
-    const std::string expected = fmt::format("expected an array of tables, [[{}]]", key);
+    const std::string expected =
+        fmt::format("expected an array of tables, [[{}{}]]", key == "key" ? "camera." : "", key);
     const auto* array = node->as_array();
     if (array == nullptr) fail_at(*node, key, expected);
-    for (const auto& element : *array) {
-        if (!element.is_table()) fail_at(element, key, expected);
-        all.push_back(element.as_table());
+    for (std::size_t i = 0; i < array->size(); ++i) {
+        const toml::node& element = *array->get(i);
+        if (element.is_table())
+            all.push_back(element.as_table());
+        else
+            collect([&] { fail_at(element, fmt::format("{}[{}]", key, i), expected); });
     }
     return all;
 }

@@ -14,7 +14,7 @@ namespace tesserae::scenes {
 namespace {
 
 /// Less than this many times the overlap that the solver allows is meant to touch.
-constexpr double kDeep = 10;
+constexpr double kDeep = 2;
 constexpr std::size_t kMostWarnings = 5;
 
 struct Overlap {
@@ -49,14 +49,15 @@ std::string name_at(const Scene& scene, BodyId id) {
     const auto run = std::prev(
         std::upper_bound(scene.names.begin(), scene.names.end(), id,
                          [](BodyId i, const NamedBodies& named) { return i < named.first; }));
-    return fmt::format("{}\"{}\"", run->count > 1 ? "a body of " : "", run->name);
+    return run->is_lattice ? fmt::format("\"{}.{}\"", run->name, id - run->first)
+                           : fmt::format("\"{}\"", run->name);
 }
 
 }  // namespace
 
 std::vector<std::string> overlap_warnings(const Scene& scene) {
     std::vector<std::string> warnings;
-    if (!scene.physics) return warnings;
+    if (!scene.physics || scene.physics->duration == 0) return warnings;
     const Simulation simulation = make_simulation(scene.bodies, *scene.physics);
     parallel::PairTable pairs;
     parallel::SortAndSweep().overlapping_pairs(simulation, bounds_of(simulation), pairs);
@@ -64,8 +65,10 @@ std::vector<std::string> overlap_warnings(const Scene& scene) {
     std::vector<Overlap> overlaps;
     std::vector<Contact> contacts;
     pairs.for_each({0, pairs.size()}, [&](BodyId a, BodyId b) {
+        const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+        if (type_a.inverse_mass == 0 && type_b.inverse_mass == 0) return;
         const double depth = depth_of(simulation.bodies, a, b, contacts);
-        const double allowed = std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
+        const double allowed = std::min(type_a.slop, type_b.slop);
         if (depth > kDeep * allowed) overlaps.push_back({depth, a, b});
     });
     std::stable_sort(overlaps.begin(), overlaps.end(),

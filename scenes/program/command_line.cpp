@@ -87,7 +87,7 @@ void add_picture(CLI::App& app, CommandLine& line, Typed& typed) {
 void add_simulation(CLI::App& app, CommandLine& line) {
     app.add_option("--store-every", line.store_every,
                    "store every K-th step (default: the steps that the frames need)")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 53));
     app.add_option("--trace", line.trace,
                    "which thread simulated what when, as JSON for Perfetto or chrome://tracing");
 }
@@ -371,6 +371,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     if (const auto* frames = chosen.get_option_no_throw("--frames");
         frames != nullptr && frames->count() > 0 && line.frames.empty())
         throw InputError("--frames \"\": expected frames, for example 0-239x2,300");
+    for (const CLI::Option* option : chosen.get_options()) {
+        const auto& values = option->results();
+        if (std::find(values.begin(), values.end(), "") != values.end())
+            throw InputError(fmt::format("{} \"\": expected a value", option->get_name()));
+    }
     require_output_kind(line);
     if (line.command == "generate") require_known_generator(line.generator);
     if (!typed.tiles.empty()) line.tiles = part_of(typed.tiles);

@@ -109,6 +109,7 @@ class Filming {
         }
         frames_ = parse_frames(line.frames, frame_count(work_.scene));
         if (line.draft && line.frames.empty()) frames_ = draft_frames();
+        if (line.draft) require_draft_folder();
         require_memory(work_.plan, work_.scene);
     }
 
@@ -147,14 +148,28 @@ class Filming {
 
     /// The folder holds a draft, which costs seconds: it may be replaced.
     bool is_draft(const fs::path& folder) const {
-        return line_.draft && fs::exists(folder / kSceneFile) && fs::exists(folder / kFramesFile);
+        return line_.draft && fs::exists(folder / kFramesFile);
+    }
+    /// @throws InputError   it holds something else
+    void require_draft_folder() const {
+        if (!fs::exists(folder_) || is_draft(folder_) || fs::exists(folder_ / kSceneFile)) return;
+        if (!fs::is_directory(folder_) || !fs::is_empty(folder_))
+            throw InputError(
+                fmt::format("{}: is there and no draft; choose another folder", folder_.string()));
     }
 
     /// Whether a trajectory of another motion may be replaced: where it was asked for, and where it
     /// serves drafts alone.
     bool may_replace_trajectory() const {
-        return line_.overwrite ||
-               (is_run_ && is_draft(folder_) && !fs::exists(line_.output / "frames"));
+        return line_.overwrite || (is_run_ && is_draft(folder_));
+    }
+    /// @throws InputError   a draft would have to replace the trajectory of a film
+    void require_no_film(Served served) const {
+        if (line_.draft && served == Served::kByOther && fs::exists(line_.output / "frames"))
+            throw InputError(fmt::format(
+                "{}: is of the film in {}, whose bodies move otherwise; choose another folder for "
+                "the draft",
+                trajectory_.string(), line_.output.string()));
     }
 
     std::vector<int> draft_frames() const {
@@ -219,6 +234,7 @@ class Filming {
         create_folder(folder_);
         trajectory_ = line_.output / "trajectory.h5";
         const Served served = how_served(scene(), trajectory_, line_.store_every);
+        require_no_film(served);
         const std::string file = trajectory_.string();
         SimulateReport report;
         std::string text;

@@ -283,6 +283,7 @@ TEST(Frame, PreviewIsTheBoxFilteredPicture) {
 TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
     TestScene scene = busy_scene();
     scene.settings.sky = Sky::kTransparent;
+    scene.lights.spheres.push_back({Vec4(0, 3, 3, 0), 1.5, Color(0.5, 0.25, 0)});
     const Folder folder;
     render(scene, folder / "a.exr", folder / "a.png");
     const Image image = read_exr(folder / "a.exr");
@@ -293,19 +294,20 @@ TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
     png.format = PNG_FORMAT_RGBA;
     std::vector<std::uint8_t> codes(PNG_IMAGE_SIZE(png));
     ASSERT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
-    int edges = 0, clear = 0;
+    int edges = 0, clear = 0, lamp = 0;
     for (int y = 0; y < 90; ++y)
         for (int x = 0; x < 150; ++x) {
             const auto* code = &codes[static_cast<std::size_t>(4 * (150 * y + x))];
-            const double alpha = image.at("A", x, y);
+            const double covered = image.at("A", x, y);
+            const auto light = [&](int c) {
+                return std::min(1.f, image.at(std::string(1, "RGB"[c]), x, y));
+            };
+            // The disc of the lamp has no coverage.
+            const double alpha = covered > 0 ? covered : std::max({light(0), light(1), light(2)});
             ASSERT_NEAR(code[3], 255 * alpha, 0.501);
-            edges += alpha > 0 && alpha < 1, clear += alpha == 0;
+            edges += covered > 0 && covered < 1, clear += alpha == 0, lamp += covered < alpha;
             for (int c = 0; c < 3; ++c) {
-                const double colour =
-                    alpha > 0
-                        ? std::min(1.0,
-                                   std::min(1.f, image.at(std::string(1, "RGB"[c]), x, y)) / alpha)
-                        : 0;
+                const double colour = alpha > 0 ? std::min(1.0, light(c) / alpha) : 0;
                 const double expected =
                     255 * (colour <= 0.0031308 ? 12.92 * colour
                                                : 1.055 * std::pow(colour, 1 / 2.4) - 0.055);
@@ -315,6 +317,7 @@ TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
         }
     EXPECT_GT(edges, 50);
     EXPECT_GT(clear, 100);
+    EXPECT_GT(lamp, 20);
     // From the image the same bytes are made again.
     ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings.exposure, scene.settings.sky,
                                folder / "b.png"));

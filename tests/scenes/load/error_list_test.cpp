@@ -41,8 +41,10 @@ const std::vector<Wrong>& wrong_tables() {
          "0]\n",
          {{4, 8, "never moves"}, {5, 12, "never moves"}}},
         {"[[body]]\nshape = \"hypersphere\"\nradius = 1\nrotation = { xq = 1, zz = 2 }\n"
-         "material = \"none such\"\n",
-         {{4, 14, "xq"}, {4, 22, "zz"}, {5, 12, "no material"}}},
+         "restitution = 2\n",
+         {{4, 14, "xq"}, {4, 22, "zz"}, {5, 15, "restitution = 2"}}},
+        {"[[body]]\nshape = \"hypersphere\"\nradius = 1\nrotation = [{ xq = 1 }, 3, { zz = 2 }]\n",
+         {{4, 15, "xq"}, {4, 25, "wrong type"}, {4, 30, "zz"}}},
         {"[[light]]\ntype = \"lamp\"\nposition = [0, 1, 0, 0]\nstrength = -1\n",
          {{2, 8, "expected one of"}, {4, 12, "strength = -1"}}},
         {"[[light]]\ndirection = [0, 0, 0, 0]\n", {{1, 1, "type is missing"}}},
@@ -103,12 +105,36 @@ TEST(SceneErrors, SayWhatIsWrong) {
     }
 }
 
+/// A body may name what a wrong table would have been.
+TEST(SceneErrors, OfAMaterialAreNotToldAgainOfItsBodies) {
+    const std::string body =
+        "[[body]]\nshape = \"hypersphere\"\nradius = 1\nmaterial = \"brick\"\n";
+    EXPECT_NE(error_of(body).find("no material is called that"), std::string::npos);
+    for (const char* table :
+         {"[[material]]\nnmae = \"brick\"\n", "[[materials]]\nname = \"brick\"\n",
+          "[[material]]\nname = \"brick\"\nior = 0\n"}) {
+        const std::string error = error_of(table + body);
+        EXPECT_NE(error, "");
+        EXPECT_EQ(error.find("no material"), std::string::npos) << error;
+    }
+    for (const char* wrong :
+         {"light = [{ type = \"sky\", strength = -1 }, 5, { type = \"sun\" }]\n",
+          "material = [{ name = \"a\" }, 3]\n", "body = [5, { shape = \"hypersphere\" }]\n"})
+        EXPECT_NE(error_of(wrong).find("expected an array of tables"), std::string::npos)
+            << error_of(wrong);
+    const std::string masses = error_of(body + "mass = 1e61\n");
+    EXPECT_NE(masses.find("<= 1e+60"), std::string::npos) << masses;
+    EXPECT_EQ(masses.find("1e+15"), std::string::npos) << masses;
+}
+
 TEST(SceneErrors, AreTwentyAtMost) {
     std::string text;
     for (int i = 0; i < 1000; ++i) text += "[[body]]\nshape = \"hypersphere\"\nradius = -1\n";
     const std::string message = error_of(text);
     EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20) << message;
-    EXPECT_TRUE(message.ends_with("more may follow")) << message;
+    EXPECT_TRUE(message.ends_with("there may be more")) << message;
+    for (int i = 0; i < 20; ++i)
+        EXPECT_NE(message.find(fmt::format(":{}:10: ", 3 * i + 3)), message.npos) << message;
 }
 
 TEST(SceneErrors, OfSyntaxSayWhatIsMeant) {

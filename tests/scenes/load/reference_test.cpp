@@ -99,6 +99,10 @@ TEST(Reference, OfATopicIsShortOrNamesTheNearest) {
     EXPECT_NE(reference("body.friction").find("| `friction` | real |"), std::string::npos);
     EXPECT_EQ(reference("body.friction"), reference("lattice.friction"));
     EXPECT_LT(reference("render.samples").size(), 400U);
+    EXPECT_EQ(reference("[[body]]"), reference("body"));
+    EXPECT_NE(reference("rotation").find("[[body]]"), std::string::npos);
+    EXPECT_NE(reference("hyperbox.size").find("shape = \"hyperbox\""), std::string::npos);
+    EXPECT_NE(reference("size").find("[render]"), std::string::npos);
     EXPECT_NE(reference("camera.key.time").find("`time`"), std::string::npos);
     const auto error_for = [](const char* topic) {
         try {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/scenes/program/program.hpp"
@@ -147,10 +148,10 @@ TEST_F(Change, ADraftReplacesItselfAndNoFilm) {
     const std::vector<std::string> slow = {"--draft", "--set", "physics.gravity=[0, -5, 0, 0]"};
     const int drafted = run(out_, {"--draft"}).json["render"]["rendered"];
     // Other light, other motion, other bodies: all is made again, without being asked to.
-    EXPECT_EQ(run(out_, {"--draft", "--set", "render.exposure=1", "--set",
-                         "camera.field_of_view=33"})
-                  .json["render"]["rendered"],
-              drafted);
+    EXPECT_EQ(
+        run(out_, {"--draft", "--set", "render.exposure=1", "--set", "camera.field_of_view=33"})
+            .json["render"]["rendered"],
+        drafted);
     EXPECT_EQ(run(out_, slow).json["render"]["rendered"], drafted);
     EXPECT_EQ(run(out_, {"--draft"}).json["simulate"]["first_step"], 0);
     // The film's trajectory stays, and so does the film.
@@ -160,6 +161,33 @@ TEST_F(Change, ADraftReplacesItselfAndNoFilm) {
     command.insert(command.end(), slow.begin(), slow.end());
     EXPECT_EQ(tesserae(command).status, 2);
     EXPECT_EQ(trajectory_time(), made);
+    command.push_back("--overwrite");
+    const Outcome refused = tesserae(command);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("another folder"), std::string::npos) << refused.err;
+    EXPECT_EQ(trajectory_time(), made);
+    EXPECT_EQ(run(out_, {}).json["render"]["rendered"], 0) << "the film is as it was";
+}
+
+TEST_F(Change, ADraftsFilmHasItsOwnFrames) {
+    const WithFilms films;
+    const int drafted = run(out_, {"--draft"}).json["render"]["rendered"];
+    // A frame more does not spoil it.
+    run(out_, {"--draft", "--frames", "1"});
+    EXPECT_EQ(run(out_, {"--draft", "--set", "camera.field_of_view=33"}).json["film"]["frames"],
+              drafted);
+}
+
+TEST_F(Change, AFolderThatIsNoDraftIsNotWrittenInto) {
+    const fs::path foreign = fs::path(out_) / "draft";
+    fs::create_directories(foreign);
+    std::ofstream(foreign / "notes.txt") << "mine";
+    const Outcome draft = tesserae({"run", scene_, "-o", out_, "--draft"});
+    EXPECT_EQ(draft.status, 2);
+    EXPECT_NE(draft.err.find("no draft"), std::string::npos) << draft.err;
+    EXPECT_EQ(files_below(out_), std::vector<std::string>{"draft/notes.txt"});
+    fs::remove(foreign / "notes.txt");
+    EXPECT_EQ(tesserae({"run", scene_, "-o", out_, "--draft", "--size", "48x32"}).status, 0);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());
         argv.push_back(nullptr);
-        if (films == 0 && arguments.front() == "run") setenv("PATH", "/nonexistent", 1);
+        if (films == 0 && !arguments.empty() && arguments.front() == "run")
+            setenv("PATH", "/nonexistent", 1);
         execv(argv[0], argv.data());
         _exit(127);
     }
