@@ -392,9 +392,12 @@ std::string commands_page() {
     std::string page =
         "# Commands\n\nWhat every command does and which options it has. The program prints this "
         "page: `tesserae reference commands`.\n";
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        page += fmt::format("\n## tesserae {}\n\n```text\n{}```\n", command->get_name(),
-                            command->help());
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        std::string help = command->help();
+        // The library's versions end it with one empty line or none.
+        help.erase(help.find_last_not_of('\n') + 1);
+        page += fmt::format("\n## tesserae {}\n\n```text\n{}\n```\n", command->get_name(), help);
+    }
     return page;
 }
 
