@@ -176,6 +176,15 @@ Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_
     return is_beginning ? Served::kByBeginning : Served::kByOtherSteps;
 }
 
+bool is_made_by(const fs::path& file, const char* creator) {
+    if (!fs::exists(file)) return false;
+    try {
+        return TrajectoryReader(file).header().creator == creator;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
                         std::uint64_t store_every, bool overwrite, bool quiet,
                         parallel::Trace* trace, const char* creator) {

@@ -32,6 +32,9 @@ enum class Served {
 };
 Served how_served(const Scene& scene, const std::filesystem::path& file, std::uint64_t store_every);
 
+/// Whether a trajectory says that it was made by this: see simulate().
+bool is_made_by(const std::filesystem::path& file, const char* creator);
+
 /// Moves the scene's bodies and stores their states in `file`. A whole file of the same motion and
 /// steps is left as it is; an unfinished one is continued, and so is a finished one of a shorter
 /// duration: the bytes of every dataset are those of one straight run.

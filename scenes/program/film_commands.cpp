@@ -75,6 +75,9 @@ std::string movie_text(const MovieReport& r) {
                        r.frames_per_second);
 }
 
+/// What a draft's trajectory says that it was made by, until a film takes it: it may be replaced.
+constexpr const char* kDraftCreator = "tesserae run --draft";
+
 /// simulate(), and the trace of it where one is asked for.
 SimulateReport traced_simulate(const CommandLine& line, const Work& work, const fs::path& file,
                                bool overwrite) {
@@ -84,8 +87,9 @@ SimulateReport traced_simulate(const CommandLine& line, const Work& work, const 
         // Empty at first, so that a path that cannot be written shows before the work.
         write_file(line.trace, trace->json());
     }
-    const SimulateReport report = simulate(work.scene, work.plan, file, line.store_every, overwrite,
-                                           line.quiet, trace ? &*trace : nullptr);
+    const SimulateReport report =
+        simulate(work.scene, work.plan, file, line.store_every, overwrite, line.quiet,
+                 trace ? &*trace : nullptr, line.draft ? kDraftCreator : "tesserae");
     if (trace) write_file(line.trace, trace->json());
     return report;
 }
@@ -158,10 +162,10 @@ class Filming {
                 fmt::format("{}: is there and no draft; choose another folder", folder_.string()));
     }
 
-    /// Whether a trajectory of another motion may be replaced: where it was asked for, and where it
-    /// serves drafts alone.
+    /// Whether a trajectory of another motion may be replaced: where it was asked for, and where a
+    /// draft has made it.
     bool may_replace_trajectory() const {
-        return line_.overwrite || (is_run_ && is_draft(folder_));
+        return line_.overwrite || (line_.draft && is_made_by(trajectory_, kDraftCreator));
     }
     /// @throws InputError   a draft would have to replace the trajectory of a film
     void require_no_film(Served served) const {

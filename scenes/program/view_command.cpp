@@ -25,15 +25,6 @@ Scene viewed_scene(const CommandLine& line, bool is_trajectory) {
 /// What view's own trajectories say that they were made by: these may be replaced, as pages may.
 constexpr const char* kCreator = "tesserae view";
 
-bool is_own(const fs::path& trajectory) {
-    if (!fs::exists(trajectory)) return false;
-    try {
-        return TrajectoryReader(trajectory).header().creator == kCreator;
-    } catch (const InputError&) {
-        return false;
-    }
-}
-
 }  // namespace
 
 void view_command(const CommandLine& line) {
@@ -53,8 +44,8 @@ void view_command(const CommandLine& line) {
     parallel::Threads(line.threads).run([&] {
         if (!is_trajectory && plan.moves) {
             trajectory = fs::path(line.output).replace_extension(".h5");
-            simulate(scene, plan, trajectory, 0, line.overwrite || is_own(trajectory), line.quiet,
-                     nullptr, kCreator);
+            simulate(scene, plan, trajectory, 0, line.overwrite || is_made_by(trajectory, kCreator),
+                     line.quiet, nullptr, kCreator);
         }
         report = write_view(scene, trajectory, line.output, options);
     });

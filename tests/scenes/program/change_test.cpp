@@ -169,6 +169,18 @@ TEST_F(Change, ADraftReplacesItselfAndNoFilm) {
     EXPECT_EQ(run(out_, {}).json["render"]["rendered"], 0) << "the film is as it was";
 }
 
+/// It may have taken hours.
+TEST_F(Change, ADraftReplacesNoTrajectoryThatItHasNotMade) {
+    ASSERT_EQ(tesserae({"simulate", scene_, "-o", out_ + "/trajectory.h5"}).status, 0);
+    run(out_, {"--draft"});
+    const auto made = trajectory_time();
+    EXPECT_EQ(tesserae({"run", scene_, "-o", out_, "--draft", "--size", "48x32", "--set",
+                        "physics.gravity=[0, -5, 0, 0]"})
+                  .status,
+              2);
+    EXPECT_EQ(trajectory_time(), made);
+}
+
 TEST_F(Change, ADraftsFilmHasItsOwnFrames) {
     const WithFilms films;
     const int drafted = run(out_, {"--draft"}).json["render"]["rendered"];

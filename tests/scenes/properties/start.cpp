@@ -34,8 +34,7 @@ void scale_shape(Shape& shape, double factor) {
     }
     std::visit(
         [&](auto& s) {
-            s.parameters(s,
-                         [&](const Key&, auto& value, Rule) { scale_parameter(value, factor); });
+            s.parameters(s, [&](const Key&, auto& value, Rule) { scale_parameter(value, factor); });
             if constexpr (requires { complete(s); }) complete(s);
         },
         shape);
