@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "render/file/exr_header.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -34,38 +35,6 @@ constexpr int kMostLinesTogether = 256;
 
 void require(bool good, const char* what) {
     if (!good) throw std::runtime_error(what);
-}
-
-/// The header's bytes: magic number, version, then attributes as name, type, length and value up to
-/// an empty name (OpenEXR File Layout). A first sieve, since OpenEXR takes memory for a value
-/// before it notices that the file is shorter.
-/// @return the version with its flags
-int checked_version(const std::filesystem::path& path) {
-    require(std::filesystem::is_regular_file(path), "is not a file");
-    std::ifstream in(path, std::ios::binary);
-    require(in.good(), std::strerror(errno));
-    const auto number = [&] {
-        std::int32_t value = 0;
-        in.read(reinterpret_cast<char*>(&value), sizeof value);
-        return value;
-    };
-    // Sets `word` to the bytes up to the next zero.
-    std::string word;
-    const auto next_word = [&] {
-        require(std::getline(in, word, '\0') && !in.eof(), "its header is cut off");
-    };
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-    const std::int32_t magic = number();
-    require(!in.bad(), std::strerror(errno));
-    require(magic == Imf::MAGIC, "has another magic number");
-    const std::int32_t version = number();
-    for (next_word(); !word.empty(); next_word()) {
-        next_word();
-        const std::int64_t length = number();
-        require(in.good() && length >= 0 && length <= bytes - in.tellg(), "its header is cut off");
-        in.seekg(length, std::ios::cur);
-    }
-    return version;
 }
 
 std::vector<ImageChannel> checked_channels(const Imf::ChannelList& list) {
@@ -170,7 +139,7 @@ struct ImagePixels::File {
 };
 
 void ImagePixels::File::open() {
-    int version = checked_version(path);
+    int version = checked_exr_version(path);
     require(!Imf::isMultiPart(version), "holds several parts, which is not compared");
     require(!Imf::isNonImage(version), "holds deep pixels, which is not compared");
 

@@ -17,6 +17,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "render/file/image_info.hpp"
 #include "tests/error_of.hpp"
 #include "tests/render/test_scene.hpp"
 #include "tests/temporary_folder.hpp"
@@ -220,6 +221,9 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
     write(path_, bad);
     const std::string error = error_of<InputError>([&] { const ImagePixels image(path_); });
     EXPECT_NE(error.find("header is cut off"), std::string::npos) << error;
+    // So says what reads no pixels.
+    const std::string info = error_of<InputError>([&] { read_image_info(path_); });
+    EXPECT_NE(info.find("header is cut off"), std::string::npos) << info;
 }
 
 TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
