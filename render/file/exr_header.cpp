@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -36,22 +37,68 @@ class HeaderWalk {
         std::string name = word();
         if (name.empty()) return false;
         for (; !name.empty(); name = word()) {
-            word();
+            const std::string type = word();
             const std::int64_t length = number();
-            const std::int64_t left = static_cast<std::int64_t>(bytes_) - in_.tellg();
-            require_header(in_.good() && length >= 0 && length <= left, kCut);
-            in_.seekg(length, std::ios::cur);
+            const std::int64_t begin = in_.tellg(), end = begin + length;
+            require_header(in_.good() && length >= 0 && end <= static_cast<std::int64_t>(bytes_),
+                           kCut);
+            // OpenEXR reads such a value by its type: of another length it would take what follows
+            // for something else.
+            const auto fixed = kLengths.find(type);
+            bool is_right = fixed == kLengths.end() || fixed->second == length;
+            if (type == "chlist") is_right = skip_channels() == end;
+            if (type == "preview" && length >= 8) {
+                const std::int64_t width = number(), height = number();
+                is_right = width >= 0 && height >= 0 && 4 * width * height == length - 8;
+            }
+            require_header(is_right, "a value of its header has another length than its type");
+            in_.seekg(end);
         }
         return true;
     }
 
   private:
     static constexpr const char* kCut = "its header is cut off";
+    static constexpr std::size_t kLongestName = 255;
 
+    /// Of values whose type tells it [bytes].
+    static inline const std::map<std::string, std::int64_t> kLengths = {{"box2f", 16},
+                                                                        {"box2i", 16},
+                                                                        {"chromaticities", 32},
+                                                                        {"compression", 1},
+                                                                        {"deepImageState", 1},
+                                                                        {"double", 8},
+                                                                        {"envmap", 1},
+                                                                        {"float", 4},
+                                                                        {"int", 4},
+                                                                        {"keycode", 28},
+                                                                        {"lineOrder", 1},
+                                                                        {"m33d", 72},
+                                                                        {"m33f", 36},
+                                                                        {"m44d", 128},
+                                                                        {"m44f", 64},
+                                                                        {"rational", 8},
+                                                                        {"tiledesc", 9},
+                                                                        {"timecode", 8},
+                                                                        {"v2d", 16},
+                                                                        {"v2f", 8},
+                                                                        {"v2i", 8},
+                                                                        {"v3d", 24},
+                                                                        {"v3f", 12},
+                                                                        {"v3i", 12}};
+
+    /// Channels: a name and 16 bytes each, up to an empty name.
+    /// @return where they end
+    std::int64_t skip_channels() {
+        while (!word().empty()) in_.seekg(16, std::ios::cur);
+        return in_.tellg();
+    }
     /// The bytes up to the next zero.
     std::string word() {
         std::string text;
         require_header(std::getline(in_, text, '\0') && !in_.eof(), kCut);
+        // OpenEXR takes so many bytes for a whole name, and what follows for something else.
+        require_header(text.size() <= kLongestName, "its header has a name that is too long");
         return text;
     }
 

@@ -224,6 +224,17 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
     // So says what reads no pixels.
     const std::string info = error_of<InputError>([&] { read_image_info(path_); });
     EXPECT_NE(info.find("header is cut off"), std::string::npos) << info;
+    // Values that OpenEXR reads by their type, whatever their length says: what follows would be
+    // taken for names and lengths.
+    for (const char* name : {"channels", "dataWindow", "tiles", "lineOrder", "pixelAspectRatio"}) {
+        bad = good;
+        const std::size_t type = at(name), value = good.find('\0', type) + 1;
+        bad[value] = static_cast<char>(bad[value] + (std::string(name) == "channels" ? -1 : 1));
+        bad.insert(value + 4, 1, '\x7f');
+        write(path_, bad);
+        const std::string told = error_of<InputError>([&] { read_image_info(path_); });
+        EXPECT_NE(told.find("its header"), std::string::npos) << name << ": " << told;
+    }
 }
 
 TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
