@@ -203,11 +203,11 @@ class Filming {
         for (const std::string& warning : overlap_warnings(scene()))
             tell(fmt::format("warning: {}", warning));
         if (fs::exists(line_.output / "trajectory.h5")) return;
-        constexpr double kMostSeconds = 1;
+        constexpr double kEstimateSeconds = 1;
         Cost cost;
         try {
             cost = measure_cost(scene(), work_.plan, {}, frames_,
-                                std::min(kMostSeconds, measuring_seconds(scene())));
+                                std::min(kEstimateSeconds, measuring_seconds(scene())));
         } catch (const std::exception& error) {
             // An estimate never ends a run; what is really wrong the run itself will meet.
             if (stop_requested()) throw;

@@ -17,11 +17,11 @@ namespace tesserae::scenes::testing {
 namespace fs = std::filesystem;
 
 namespace {
-int films = 0;
+int films_wanted = 0;
 }
 
-WithFilms::WithFilms() { ++films; }
-WithFilms::~WithFilms() { --films; }
+WithFilms::WithFilms() { ++films_wanted; }
+WithFilms::~WithFilms() { --films_wanted; }
 
 Outcome tesserae(const std::vector<std::string>& arguments, int signal, int milliseconds) {
     const Folder folder("program");
@@ -38,7 +38,7 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
         std::vector<char*> argv;
         for (std::string& word : words) argv.push_back(word.data());
         argv.push_back(nullptr);
-        if (films == 0 && !arguments.empty() && arguments.front() == "run")
+        if (films_wanted == 0 && !arguments.empty() && arguments.front() == "run")
             setenv("PATH", "/nonexistent", 1);
         execv(argv[0], argv.data());
         _exit(127);
