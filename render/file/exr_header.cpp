@@ -57,6 +57,8 @@ class HeaderWalk {
         return true;
     }
 
+    std::uint64_t position() { return static_cast<std::uint64_t>(in_.tellg()); }
+
   private:
     static constexpr const char* kCut = "its header is cut off";
     static constexpr std::size_t kLongestName = 255;
@@ -108,14 +110,14 @@ class HeaderWalk {
 
 }  // namespace
 
-int checked_exr_version(const std::filesystem::path& path) {
+ExrHeader checked_exr_header(const std::filesystem::path& path) {
     require_header(std::filesystem::is_regular_file(path), "is not a file");
     HeaderWalk walk(path);
     require_header(walk.number() == Imf::MAGIC, "has another magic number");
     const int version = walk.number();
     // Headers of several parts end with an empty one.
     while (walk.skip_attributes() && Imf::isMultiPart(version)) continue;
-    return version;
+    return {version, walk.position()};
 }
 
 }  // namespace tesserae::render

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 namespace tesserae::render {
 
+struct ExrHeader {
+    int version = 0;        ///< with its flags
+    std::uint64_t end = 0;  ///< where the table of tiles or lines begins
+};
+
 /// Goes through the header of an OpenEXR file, value by value: a first sieve of every file that is
 /// opened, since OpenEXR takes memory for a value before it notices that the file is shorter.
-/// @return the version with its flags
 /// @throws std::runtime_error   why it is no such header; without the path
-int checked_exr_version(const std::filesystem::path& path);
+ExrHeader checked_exr_header(const std::filesystem::path& path);
 
 }  // namespace tesserae::render

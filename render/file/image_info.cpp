@@ -67,7 +67,7 @@ void read_version(const Imf::Header& header, const char* name, int& version) {
 ImageInfo read_image_info(const std::filesystem::path& file) {
     ImageInfo info;
     try {
-        checked_exr_version(file);
+        checked_exr_header(file);
         const Imf::InputFile in(file.c_str());
         const Imf::Header& header = in.header();
         const auto &full = header.displayWindow(), &data = header.dataWindow();

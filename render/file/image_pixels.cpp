@@ -139,7 +139,7 @@ struct ImagePixels::File {
 };
 
 void ImagePixels::File::open() {
-    int version = checked_exr_version(path);
+    int version = checked_exr_header(path).version;
     require(!Imf::isMultiPart(version), "holds several parts, which is not compared");
     require(!Imf::isNonImage(version), "holds deep pixels, which is not compared");
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
-#include <string>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "core/error.hpp"
+#include "render/file/exr_header.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -22,17 +24,13 @@ T number(std::istream& in) {
 /// Flags of the version (OpenEXR's "File Layout").
 constexpr std::uint32_t kTiled = 0x200, kDeep = 0x800, kSeveralParts = 0x1000;
 
-/// Skips the header's attributes (each a name, a type, a size and as many bytes; an empty name ends
-/// them).
-/// @return false: a size is none
-bool skip_header(std::istream& in) {
-    for (std::string name, type; std::getline(in, name, '\0') && !name.empty();) {
-        std::getline(in, type, '\0');
-        const auto size = number<std::int32_t>(in);
-        if (!in || size < 0) return false;
-        in.seekg(size, std::ios::cur);
+/// Where the header ends; none: it is cut off or damaged.
+std::optional<std::uint64_t> end_of_header(const std::filesystem::path& file) {
+    try {
+        return checked_exr_header(file).end;
+    } catch (const std::runtime_error&) {
+        return {};
     }
-    return true;
 }
 
 }  // namespace
@@ -43,10 +41,10 @@ bool is_whole_image(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: not a readable OpenEXR image", file.string()));
     const auto version = number<std::uint32_t>(in);
     if ((version & (kDeep | kSeveralParts)) != 0) return true;
-    if (!skip_header(in)) return false;
-    const auto begin = static_cast<std::uint64_t>(in.tellg());
-    const std::uint64_t size = std::filesystem::file_size(file);
-    if (!in) return false;
+    const std::optional<std::uint64_t> end = end_of_header(file);
+    if (!end) return false;
+    const std::uint64_t begin = *end, size = std::filesystem::file_size(file);
+    in.seekg(static_cast<std::streamoff>(begin));
     // The table ends where the first of them begins, and that is the least number in it.
     std::uint64_t first = size, last = 0;
     for (std::uint64_t at = begin; at + sizeof(std::uint64_t) <= first; at += sizeof at) {

@@ -101,9 +101,9 @@ class Filming {
         : line_(line),
           is_run_(line.command == "run"),
           folder_(line.draft ? line.output / "draft" : line.output),
-          replace_(line.overwrite || is_draft(folder_) ? Replace::kAll
-                   : is_run_                           ? Replace::kOtherLooks
-                                                       : Replace::kNothing),
+          replace_(line.overwrite || is_draft() ? Replace::kAll
+                   : is_run_                    ? Replace::kOtherLooks
+                                                : Replace::kNothing),
           trajectory_(line.trajectory),
           work_(line_) {
         if (line.draft) {
@@ -151,12 +151,10 @@ class Filming {
     const Scene& scene() const { return work_.scene; }
 
     /// The folder holds a draft, which costs seconds: it may be replaced.
-    bool is_draft(const fs::path& folder) const {
-        return line_.draft && fs::exists(folder / kFramesFile);
-    }
+    bool is_draft() const { return line_.draft && fs::exists(folder_ / kFramesFile); }
     /// @throws InputError   it holds something else
     void require_draft_folder() const {
-        if (!fs::exists(folder_) || is_draft(folder_) || fs::exists(folder_ / kSceneFile)) return;
+        if (!fs::exists(folder_) || is_draft() || fs::exists(folder_ / kSceneFile)) return;
         if (!fs::is_directory(folder_) || !fs::is_empty(folder_))
             throw InputError(
                 fmt::format("{}: is there and no draft; choose another folder", folder_.string()));

@@ -244,6 +244,28 @@ TEST(Frame, AuxiliaryChannelsAloneCastNoShadowRays) {
     EXPECT_EQ(render(scene, folder / "a.exr").view_rays, 150u * 90);
 }
 
+/// A PNG picture, row by row.
+struct Png {
+    std::uint32_t width = 0, height = 0;
+    std::size_t channels = 0;  ///< 3, or 4 with alpha
+    std::vector<std::uint8_t> codes;
+
+    explicit Png(const std::filesystem::path& file) {
+        png_image png = {};
+        png.version = PNG_IMAGE_VERSION;
+        EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str()));
+        channels = png.format & PNG_FORMAT_FLAG_ALPHA ? 4 : 3;
+        png.format = channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+        width = png.width, height = png.height;
+        codes.resize(PNG_IMAGE_SIZE(png));
+        EXPECT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
+    }
+};
+
+double srgb_code(double v) {
+    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+}
+
 TEST(Frame, PreviewIsTheBoxFilteredPicture) {
     // 4000 wide makes boxes of 3 x 3 with a rest of 1 at the right; 8 high a rest of 2.
     TestScene scene = busy_scene();
@@ -253,14 +275,10 @@ TEST(Frame, PreviewIsTheBoxFilteredPicture) {
     const Folder folder;
     render(scene, folder / "a.exr", folder / "a.png");
     const Image image = read_exr(folder / "a.exr");
-    png_image png = {};
-    png.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_file(&png, (folder / "a.png").c_str()));
-    EXPECT_EQ(png.width, 1334u);
-    EXPECT_EQ(png.height, 3u);
-    png.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> codes(PNG_IMAGE_SIZE(png));
-    ASSERT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
+    const Png png(folder / "a.png");
+    ASSERT_EQ(png.width, 1334u);
+    ASSERT_EQ(png.height, 3u);
+    ASSERT_EQ(png.channels, 3u);
     const char* const channels[] = {"R", "G", "B"};
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 1334; ++x)
@@ -270,12 +288,11 @@ TEST(Frame, PreviewIsTheBoxFilteredPicture) {
                 for (int v = 3 * y; v < std::min(8, 3 * y + 3); ++v)
                     for (int u = 3 * x; u < std::min(4000, 3 * x + 3); ++u, ++count)
                         sum += std::min(1.0, 2.0 * image.at(channels[c], u, v));
-                const double v = sum / count;
-                const double code =
-                    255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+                const double code = srgb_code(sum / count);
                 // Half a code, and the sums' steps of 2^-20 where sRGB is steepest (3295 codes per
                 // unit).
-                ASSERT_NEAR(codes[static_cast<std::size_t>(3 * (1334 * y + x) + c)], code, 0.504);
+                ASSERT_NEAR(png.codes[static_cast<std::size_t>(3 * (1334 * y + x) + c)], code,
+                            0.504);
             }
 }
 
@@ -287,17 +304,12 @@ TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
     const Folder folder;
     render(scene, folder / "a.exr", folder / "a.png");
     const Image image = read_exr(folder / "a.exr");
-    png_image png = {};
-    png.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_file(&png, (folder / "a.png").c_str()));
-    EXPECT_TRUE(png.format & PNG_FORMAT_FLAG_ALPHA);
-    png.format = PNG_FORMAT_RGBA;
-    std::vector<std::uint8_t> codes(PNG_IMAGE_SIZE(png));
-    ASSERT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
+    const Png png(folder / "a.png");
+    ASSERT_EQ(png.channels, 4u);
     int edges = 0, clear = 0, lamp = 0;
     for (int y = 0; y < 90; ++y)
         for (int x = 0; x < 150; ++x) {
-            const auto* code = &codes[static_cast<std::size_t>(4 * (150 * y + x))];
+            const auto* code = &png.codes[static_cast<std::size_t>(4 * (150 * y + x))];
             const double covered = image.at("A", x, y);
             const auto light = [&](int c) {
                 return std::min(1.f, image.at(std::string(1, "RGB"[c]), x, y));
@@ -308,9 +320,7 @@ TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
             edges += covered > 0 && covered < 1, clear += alpha == 0, lamp += covered < alpha;
             for (int c = 0; c < 3; ++c) {
                 const double colour = alpha > 0 ? std::min(1.0, light(c) / alpha) : 0;
-                const double expected =
-                    255 * (colour <= 0.0031308 ? 12.92 * colour
-                                               : 1.055 * std::pow(colour, 1 / 2.4) - 0.055);
+                const double expected = srgb_code(colour);
                 // Steps of 2^-20 of colour and coverage, the latter at least a quarter.
                 ASSERT_NEAR(code[c], expected, 0.53) << x << " " << y;
             }
@@ -332,14 +342,9 @@ TEST(Frame, ExtremeExposuresGiveBlackOrWhite) {
         scene.lights.sky = {0, 1, 1};
         const Folder folder;
         render(scene, folder / "a.exr", folder / "a.png");
-        png_image png = {};
-        png.version = PNG_IMAGE_VERSION;
-        ASSERT_TRUE(png_image_begin_read_from_file(&png, (folder / "a.png").c_str()));
-        png.format = PNG_FORMAT_RGB;
-        std::vector<std::uint8_t> codes(PNG_IMAGE_SIZE(png));
-        ASSERT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
-        EXPECT_EQ(codes[0], 0);
-        EXPECT_EQ(codes[1], exposure > 0 ? 255 : 0);
+        const Png png(folder / "a.png");
+        EXPECT_EQ(png.codes[0], 0);
+        EXPECT_EQ(png.codes[1], exposure > 0 ? 255 : 0);
     }
 }
 
