@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -16,7 +17,13 @@ namespace tesserae::render {
 /// Linear Rec. 709.
 using Color = Eigen::Array3d;
 
-enum class Pattern { kNone, kChecker, kStripes };
+/// What lies towards the negative and the positive side of the fourth axis is shown in these.
+inline const std::array<Color, 2> kSideColors = {Color(0.08, 0.3, 0.95), Color(1.0, 0.42, 0.06)};
+
+/// In the order of the scene format's names.
+enum class Pattern { kNone, kChecker, kStripes, kNoise, kGrid, kEdges, kCells, kW };
+/// Whose place along the world's w the pattern kW shows.
+enum class WOf { kPoint, kBody };
 
 /// In the order of the scene format's names.
 enum class MaterialKind { kDiffuse, kMirror, kGlass, kRough };
@@ -27,7 +34,9 @@ struct Material {
     Color albedo = Color::Constant(0.8);  ///< each 0 to 1
     Pattern pattern = Pattern::kNone;
     Color pattern_albedo = Color::Constant(0.2);
-    double pattern_size = 0.5;       ///< edge of a cell, width of a stripe [m]
+    double pattern_size = 0.5;  ///< see pattern_albedo() [m], > 0
+    double line_width = 0.03;   ///< the same
+    WOf w_of = WOf::kPoint;
     double albedo_variation = 0;     ///< see tint_of(), 0 to 1
     double ior = 1.5;                ///< of glass against empty space, > 1
     double roughness = 0.3;          ///< of rough, 0 to 1; 0 is a mirror
@@ -38,6 +47,7 @@ struct Material {
 struct Appearance {
     std::uint32_t material = 0;  ///< index into the materials
     bool visible = true;         ///< to the camera, and casting shadows
+    double hue_jitter = 0;       ///< see hue_turn_of(), 0 to 1
 
     friend bool operator==(const Appearance&, const Appearance&) = default;
 };
@@ -108,10 +118,10 @@ struct Channels {
     bool variance = false, samples = false;
     bool motion = false, zplanar = false, normal3 = false, light = false;
     bool cryptomatte = false;
-
-    /// Any that LayerPixel holds.
-    bool any_layer() const { return motion || zplanar || normal3 || light; }
 };
+
+/// Whether ghosts are a layer of the image only, or laid over previews and films too.
+enum class GhostsIn { kLayer, kOver };
 
 /// Whether view rays that meet nothing bring the sky's light.
 enum class Sky { kOpaque, kTransparent };
@@ -137,6 +147,10 @@ struct Settings {
     Channels channels;
     Compression compression = Compression::kZip;
     double exposure = 0;  ///< previews only [stops]
+    /// Bodies that the slice misses by less than this are ghosts, see Ghosts [m]; 0: none.
+    double ghost_depth = 0;
+    GhostsIn ghosts = GhostsIn::kLayer;
+    std::array<Color, 2> ghost_colors = kSideColors;  ///< on the negative and the positive side
     Sky sky = Sky::kOpaque;
     std::optional<Crop> crop;
 
@@ -145,6 +159,12 @@ struct Settings {
     }
     /// The pixels that are rendered: all, or the crop.
     Crop window() const { return crop.value_or(Crop{0, 0, width, height}); }
+    bool has_ghosts() const { return ghost_depth > 0; }
+    /// Any channel is asked for that LayerPixel holds.
+    bool has_layers() const {
+        const Channels& c = channels;
+        return c.motion || c.zplanar || c.normal3 || c.light || has_ghosts();
+    }
     /// Of a pixel. With a noise target a pixel has 8 at least: fewer tell nothing of its noise.
     int least_samples() const {
         return noise_target > 0 ? std::min(std::max(samples, 8), most_samples()) : samples;

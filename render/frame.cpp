@@ -101,7 +101,7 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     const FrameScene scene(picture, channels.color || channels.light || !preview.empty());
     ExrWriter image(exr, settings, window, info, picture.camera, scene.camera(), picture.mattes);
     std::optional<Preview> small;
-    if (!preview.empty()) small.emplace(window, settings.exposure, settings.sky);
+    if (!preview.empty()) small.emplace(window, settings, picture.overlay);
     FrameStats stats;
     render_tiles(
         scene, window, settings.tile, {0, SIZE_MAX}, stop,
@@ -130,7 +130,7 @@ std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& i
 
     const FrameScene scene(picture, true);
     PartWriter out(file, about);
-    Preview small(window, settings.exposure, settings.sky);
+    Preview small(window, settings, picture.overlay);
     FrameStats stats;
     const auto cut = [&](int number) {
         return static_cast<std::uint64_t>(number) * about.tiles /

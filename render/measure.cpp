@@ -119,7 +119,7 @@ FrameCost measure_frame(const Picture& whole, const FrameInfo& info, double seco
     const std::vector<Tile> tiles = some_tiles(scene, settings, cost.all);
     ExrWriter image(folder / "measured.exr", settings, settings.window(), info, picture.camera,
                     scene.camera(), picture.mattes);
-    Preview small(settings.window(), settings.exposure, settings.sky);
+    Preview small(settings.window(), settings);
     cost.before = watch.lap();
 
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());

@@ -8,6 +8,7 @@
 #include "core/dynamics/motion_version.hpp"
 #include "core/dynamics/state/bodies.hpp"
 #include "render/description.hpp"
+#include "render/file/stamp.hpp"
 #include "render/mattes.hpp"
 #include "render/picture_version.hpp"
 
@@ -42,6 +43,7 @@ struct Picture {
     /// Of the same bodies: for Channels::motion only. Without one its vectors are 0.
     const Neighbour *next = nullptr, *last = nullptr;
     const Mattes* mattes = nullptr;  ///< where Channels::cryptomatte is asked for
+    std::span<const Stamp> overlay = {};  ///< lies over the preview
 };
 
 /// What goes into the header beside the pixels.

@@ -38,6 +38,7 @@ PictureNeeds needs_of(const Picture& picture) {
     needs.lens = camera.aperture > 0;
     needs.slices = camera.slices > 1;
     needs.thick_slice = camera.slice_thickness > 0 && !needs.slices;
+    needs.ghosts = settings.has_ghosts();
     needs.moving = !picture.path.empty();
     // Of one sample only what follows the view ray is random.
     const bool anything =

@@ -15,6 +15,7 @@ struct PictureNeeds {
     bool lens;          ///< view rays start anywhere in its disc
     bool slices;        ///< several, side by side
     bool thick_slice;   ///< view rays start anywhere in it
+    bool ghosts;        ///< bodies beside the slice are drawn
     bool moving;        ///< the shutter is open while something moves
     bool moving_noise;  ///< something is random, and differs from frame to frame
 

@@ -11,6 +11,7 @@
 #include "render/description.hpp"
 #include "scenes/camera_path.hpp"
 #include "scenes/named_bodies.hpp"
+#include "scenes/overlay/overlay.hpp"
 
 namespace tesserae::scenes {
 
@@ -27,6 +28,8 @@ struct Scene {
     std::vector<CameraKey> camera_keys;  ///< ascending in time
     render::Lights lights;
     render::Settings render;
+    bool gives_ghost_depth = false;  ///< also where that is 0; if not, a draft has ghosts
+    Overlay overlay;
 
     std::vector<std::string> unused;  ///< a line for each key of the file that changes nothing
 

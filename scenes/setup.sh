@@ -15,6 +15,7 @@ packages=(
     libembree-dev         # rays through a lens or a shutter: Embree 3.13, 4.3
     libopenexr-dev        # frames: OpenEXR 3.1
     libpng-dev zlib1g-dev # previews
+    libfreetype-dev fonts-dejavu-core # text over previews: FreeType 2.12, 2.13
     ffmpeg                # films of previews: ffmpeg 5.1, 7.1; may be missing
     libhdf5-dev           # trajectories: HDF5 1.10, 1.14, without MPI
     libtomlplusplus-dev   # scene files: toml++ 3.3, 3.4

@@ -32,8 +32,12 @@ std::optional<SliceSheet::Cell> SliceSheet::cell_of(int x, int y) const {
     const int column = x / cell_width_, row = y / cell_height_;
     const int slice = row * columns_ + column;
     if (column >= columns_ || slice >= slices_) return std::nullopt;
-    const double part = slices_ == 1 ? 0 : static_cast<double>(slice) / (slices_ - 1) - 0.5;
-    return Cell{column * cell_width_, row * cell_height_, part * thickness_};
+    return Cell{column * cell_width_, row * cell_height_, fourth(slice), slice};
+}
+
+double SliceSheet::fourth(int cell) const {
+    const double part = slices_ == 1 ? 0 : static_cast<double>(cell) / (slices_ - 1) - 0.5;
+    return part * thickness_;
 }
 
 CameraRays::CameraRays(const CameraDescription& description, const Camera& camera)

@@ -17,7 +17,11 @@ class SliceSheet {
     struct Cell {
         int x0, y0;     ///< its upper left pixel
         double fourth;  ///< of its slice, from the camera's own along the fourth axis [m]
+        int number;     ///< from 0, row by row
     };
+    int cells() const { return slices_; }
+    /// Of a cell's slice.
+    double fourth(int cell) const;
     /// Nothing where no slice is shown: in what is left over at the right and the bottom.
     std::optional<Cell> cell_of(int x, int y) const;
     int cell_width() const { return cell_width_; }

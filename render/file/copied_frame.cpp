@@ -7,6 +7,7 @@
 #include "core/file/file_writer.hpp"
 #include "render/camera/camera.hpp"
 #include "render/file/exr_writer.hpp"
+#include "render/file/preview_file.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -21,15 +22,18 @@ void copy_bytes(const std::filesystem::path& from, const std::filesystem::path& 
 
 }  // namespace
 
-void copy_frame(const FrameFiles& from, const Picture& picture, const FrameInfo& info,
-                const FrameFiles& to) {
+void copy_frame(const FrameFiles& from, bool is_same_overlay, const Picture& picture,
+                const FrameInfo& info, const FrameFiles& to) {
     const Settings& settings = picture.settings;
     const Crop window = settings.window();
     const Camera camera(picture.camera, settings.width, settings.height);
     ExrWriter image(to.exr, settings, window, info, picture.camera, camera, picture.mattes);
     image.copy_tiles(from.exr);
     // The preview first: where the image exists, its preview does.
-    copy_bytes(from.preview, to.preview);
+    if (is_same_overlay)
+        copy_bytes(from.preview, to.preview);
+    else
+        remake_preview(from.exr, settings, picture.overlay, to.preview);
     image.finish();
 }
 

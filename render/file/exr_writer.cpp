@@ -90,7 +90,8 @@ void add_mattes(const char* layer, std::size_t offset, std::vector<ChannelPlace>
                           offset + i * sizeof(float), Record::kMattes});
 }
 
-void add_layers(const Channels& wanted, std::vector<ChannelPlace>& places) {
+void add_layers(const Settings& settings, std::vector<ChannelPlace>& places) {
+    const Channels& wanted = settings.channels;
     const auto add = [&](bool want, Imf::PixelType type, std::size_t first,
                          std::initializer_list<const char*> names) {
         if (!want) return;
@@ -109,9 +110,12 @@ void add_layers(const Channels& wanted, std::vector<ChannelPlace>& places) {
         {"direct.R", "direct.G", "direct.B"});
     add(wanted.light, Imf::HALF, offsetof(LayerPixel, indirect),
         {"indirect.R", "indirect.G", "indirect.B"});
+    add(settings.has_ghosts(), Imf::HALF, offsetof(LayerPixel, ghost),
+        {"ghost.R", "ghost.G", "ghost.B", "ghost.A"});
 }
 
-std::vector<ChannelPlace> places_of(const Channels& wanted) {
+std::vector<ChannelPlace> places_of(const Settings& settings) {
+    const Channels& wanted = settings.channels;
     constexpr std::size_t kColor = offsetof(Pixel, color), kAlbedo = offsetof(Pixel, albedo);
     constexpr std::size_t kNormal = offsetof(Pixel, normal), kPosition = offsetof(Pixel, position);
     std::vector<ChannelPlace> places;
@@ -140,7 +144,7 @@ std::vector<ChannelPlace> places_of(const Channels& wanted) {
                           {"variance.B", Imf::FLOAT, offsetof(Pixel, variance) + 8}});
     add(wanted.samples, {{"samples", Imf::UINT, offsetof(Pixel, samples)}});
     add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
-    add_layers(wanted, places);
+    add_layers(settings, places);
     if (wanted.cryptomatte) {
         add_mattes(kObjectMattes, offsetof(MattePixel, objects), places);
         add_mattes(kMaterialMattes, offsetof(MattePixel, materials), places);
@@ -192,7 +196,7 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     header.lineOrder() = Imf::RANDOM_Y;
     const auto side = static_cast<unsigned>(settings.tile);
     header.setTileDescription(Imf::TileDescription(side, side, Imf::ONE_LEVEL));
-    for (const ChannelPlace& place : places_of(settings.channels))
+    for (const ChannelPlace& place : places_of(settings))
         header.channels().insert(place.name, Imf::Channel(place.type));
     Imf::addChromaticities(header, Imf::Chromaticities());
     Imf::addFramesPerSecond(header, Imf::guessExactFps(settings.frames_per_second));
@@ -239,12 +243,13 @@ struct Packer {
 /// results are put in a row, with the table that says where they are.
 struct TilePacker::Packers {
     Imf::Header header;
+    std::vector<ChannelPlace> places;
     std::string file_header;
     std::uint64_t columns, tiles;
     tbb::enumerable_thread_specific<Packer> of_thread;
 
-    explicit Packers(const Imf::Header& head)
-        : header(head), of_thread([this] { return Packer(header); }) {
+    Packers(const Imf::Header& head, std::vector<ChannelPlace> channels)
+        : header(head), places(std::move(channels)), of_thread([this] { return Packer(header); }) {
         const Packer first(header);
         file_header.assign(first.stream.bytes.begin(), first.stream.bytes.end());
         columns = static_cast<std::uint64_t>(first.tiles.numXTiles());
@@ -254,12 +259,11 @@ struct TilePacker::Packers {
 
 TilePacker::TilePacker(const Settings& settings, const Crop& window, const FrameInfo& info,
                        const CameraDescription& description, const Camera& camera,
-                       const Mattes* mattes)
-    : channels_(settings.channels) {
-    if (places_of(channels_).empty())
+                       const Mattes* mattes) {
+    if (places_of(settings).empty())
         throw InputError("render.channels = []: an image needs at least one channel");
-    packers_ =
-        std::make_unique<Packers>(header_of(settings, window, info, description, camera, mattes));
+    packers_ = std::make_unique<Packers>(
+        header_of(settings, window, info, description, camera, mattes), places_of(settings));
 }
 
 TilePacker::~TilePacker() = default;
@@ -300,7 +304,7 @@ PackedTile TilePacker::pack(const TileImage& tile) {
     // Channels lie interleaved in the tile's records.
     const Imath::V2i corner(tile.x0, tile.y0);
     Imf::FrameBuffer buffer;
-    for (const ChannelPlace& place : places_of(channels_)) {
+    for (const ChannelPlace& place : packers_->places) {
         const auto [records, stride] = records_of(tile, place.record);
         buffer.insert(place.name,
                       Imf::Slice::Make(place.type, records + place.offset, corner, tile.width(),

@@ -36,7 +36,6 @@ class TilePacker {
   private:
     friend class ExrWriter;
     struct Packers;
-    Channels channels_;
     std::unique_ptr<Packers> packers_;
 };
 

@@ -20,9 +20,9 @@ namespace {
 
 /// Format: this text; a PartHeader; the EXR header; per tile its index by rows, the count of its
 /// bytes and the bytes; an index of kNoMore; the preview's sums, all of them the part has touched
-/// in runs of first, count, sums; kNoMore; the checksum of all bytes before it. Numbers are
-/// little-endian.
-constexpr std::array<char, 16> kMagic = {"tesserae tiles3"};
+/// in runs of first, count, sums; kNoMore; the count of the preview's stamps, and of each its
+/// StampHeader and colours; the checksum of all bytes before it. Numbers are little-endian.
+constexpr std::array<char, 16> kMagic = {"tesserae tiles4"};
 constexpr std::uint64_t kNoMore = ~std::uint64_t{0};
 /// As Settings allow it.
 constexpr int kMostPixels = 65536;
@@ -33,6 +33,10 @@ struct PartHeader {
     std::int32_t sky = 0, unused = 0;
     std::uint64_t tiles = 0;  ///< of the whole frame
     std::uint64_t header_bytes = 0;
+};
+
+struct StampHeader {
+    std::int32_t x = 0, y = 0, width = 0, height = 0;
 };
 
 /// Of bytes in the order in which they are added. Finds what a disk or a network has changed, not
@@ -86,7 +90,7 @@ class PartReader {
             tile(PackedTile{index, bytes<std::vector<char>>(get<std::uint64_t>())});
         }
     }
-    /// After the tiles; ends with the checksum.
+    /// After the tiles.
     /// @param add(first, sums)   false if the preview has no such pixels
     template <class Add>
     void read_sums(Add&& add) {
@@ -97,9 +101,26 @@ class PartReader {
             take(sums.data(), count * sizeof(Preview::Sum));
             if (!add(first, std::span<const Preview::Sum>(sums))) bad("its preview does not fit");
         }
+    }
+    /// After the sums; ends with the checksum.
+    std::vector<Stamp> read_overlay() {
+        std::vector<Stamp> stamps;
+        for (auto left = get<std::uint64_t>(); left > 0; --left) {
+            const auto head = get<StampHeader>();
+            const bool is_small = 0 <= head.width && head.width <= kMostPixels &&
+                                  0 <= head.height && head.height <= kMostPixels &&
+                                  std::abs(static_cast<std::int64_t>(head.x)) <= kMostPixels &&
+                                  std::abs(static_cast<std::int64_t>(head.y)) <= kMostPixels;
+            if (!is_small) bad("its overlay makes no sense");
+            const std::uint64_t count = std::uint64_t{4} * static_cast<unsigned>(head.width) *
+                                        static_cast<unsigned>(head.height);
+            stamps.push_back(
+                {head.x, head.y, head.width, head.height, bytes<std::vector<std::uint8_t>>(count)});
+        }
         const std::uint64_t expected = checksum_.value();
         if (get<std::uint64_t>() != expected) bad("its checksum is that of other bytes");
         if (left_ != 0) bad("it does not end as one");
+        return stamps;
     }
 
     PartInfo info;
@@ -223,6 +244,11 @@ void PartWriter::finish(const Preview& preview) {
         i = end + 1;
     }
     file_->put(kNoMore);
+    file_->put(std::uint64_t{preview.overlay().size()});
+    for (const Stamp& stamp : preview.overlay()) {
+        file_->put(StampHeader{stamp.x, stamp.y, stamp.width, stamp.height});
+        file_->put_bytes(stamp.rgba.data(), stamp.rgba.size());
+    }
     file_->put(file_->checksum.value());
     file_->writer.finish();
 }
@@ -234,6 +260,7 @@ std::string damage_of_part(const std::filesystem::path& file) {
         PartReader part(file);
         part.read_tiles([](const PackedTile&) {});
         part.read_sums([](std::uint64_t, std::span<const Preview::Sum>) { return true; });
+        part.read_overlay();
     } catch (const InputError& error) {
         return error.what();
     }
@@ -252,7 +279,9 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
                 const std::filesystem::path& preview) {
     const PartInfo first = read_part_info(parts.front());
     JoinedImage image(exr, first);
-    Preview small(first.window, 0, first.sky);
+    Settings settings;
+    settings.sky = first.sky;
+    Preview small(first.window, settings);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         PartReader part(parts[i]);
         if (!part.info.goes_with(first) || part.info.part.number != static_cast<int>(i) + 1 ||
@@ -264,6 +293,7 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
         part.read_sums([&](std::uint64_t begin, std::span<const Preview::Sum> sums) {
             return small.add_sums(begin, sums);
         });
+        small.set_overlay(part.read_overlay());
     }
     if (!image.is_whole())
         throw InputError(fmt::format("{}: its parts lack tiles", parts.front().string()));

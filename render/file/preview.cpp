@@ -81,10 +81,17 @@ bool encode(png_structp png, png_infop info, PngTarget* target, int width, int h
 
 }  // namespace
 
-Preview::Preview(const Crop& window, double exposure, Sky sky)
+PreviewSize preview_size(const Settings& settings) {
+    const Preview preview(settings.window(), settings);
+    return {preview.width(), preview.height()};
+}
+
+Preview::Preview(const Crop& window, const Settings& settings, std::span<const Stamp> overlay)
     : window_(window),
-      gain_(std::min(std::exp2(exposure), std::numeric_limits<double>::max())),
-      sky_(sky) {
+      gain_(std::min(std::exp2(settings.exposure), std::numeric_limits<double>::max())),
+      sky_(settings.sky),
+      ghosts_(settings.ghosts),
+      overlay_(overlay.begin(), overlay.end()) {
     const int w = window.x1 - window.x0, h = window.y1 - window.y0;
     factor_ = std::max((w + kMaxWidth - 1) / kMaxWidth, (h + kMaxHeight - 1) / kMaxHeight);
     width_ = (w + factor_ - 1) / factor_;
@@ -98,18 +105,25 @@ Preview::Sum& Preview::sum_at(int x, int y) {
     return sums_[row * static_cast<std::size_t>(width_) + column];
 }
 
-void Preview::add(int x, int y, float red, float green, float blue, float coverage) {
+void Preview::add(int x, int y, const PreviewPixel& pixel) {
+    const std::array<float, 4> over =
+        ghosts_ == GhostsIn::kOver ? pixel.ghost : std::array<float, 4>{};
+    const double clear = 1 - over[3];
     Sum& sum = sum_at(x, y);
-    sum[0] += steps_of(gain_ * red), sum[1] += steps_of(gain_ * green);
-    sum[2] += steps_of(gain_ * blue);
-    if (sky_ == Sky::kTransparent) sum[3] += steps_of(coverage);
+    for (std::size_t i = 0; i < 3; ++i)
+        sum[i] += steps_of(std::min(gain_ * pixel.color[i], 1.0) * clear + over[i]);
+    if (sky_ == Sky::kTransparent) sum[3] += steps_of(pixel.color[3] * clear + over[3]);
 }
 
 void Preview::add(const TileImage& tile) {
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x) {
             const Pixel& pixel = tile.at(x, y);
-            add(x, y, pixel.color[0], pixel.color[1], pixel.color[2], pixel.alpha);
+            PreviewPixel shown = {{pixel.color[0], pixel.color[1], pixel.color[2], pixel.alpha},
+                                  {}};
+            if (!tile.layers.empty())
+                std::copy_n(tile.layers[tile.index(x, y)].ghost, 4, shown.ghost.begin());
+            add(x, y, shown);
         }
 }
 
@@ -146,7 +160,8 @@ std::vector<std::uint8_t> Preview::codes() const {
 }
 
 void Preview::write(const std::filesystem::path& path) const {
-    const std::vector<std::uint8_t> pixels = codes();
+    std::vector<std::uint8_t> pixels = codes();
+    lay_over(overlay_, width_, height_, channels(), pixels);
     FileWriter writer(path);
     PngTarget target = {&writer, nullptr};
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &target, on_error, on_warning);

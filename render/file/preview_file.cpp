@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <vector>
 
 #include "core/error.hpp"
@@ -61,6 +62,24 @@ float value_at(const PixelPlanes& planes, const std::vector<ImageChannel>& chann
     return static_cast<float>(value_of(type, &planes[channel][bytes_of(type) * pixel]));
 }
 
+/// Of red, green, blue and alpha among an image's channels.
+using ColorPlaces = std::array<std::size_t, 4>;
+
+/// @param layer   before the channels' names
+/// @return nothing where one is missing
+std::optional<ColorPlaces> places_of(const std::vector<ImageChannel>& channels,
+                                     std::string_view layer) {
+    ColorPlaces places;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::string name = fmt::format("{}{}", layer, "RGBA"[i]);
+        const auto found = std::find_if(channels.begin(), channels.end(),
+                                        [&](const ImageChannel& c) { return c.name == name; });
+        if (found == channels.end()) return std::nullopt;
+        places[i] = static_cast<std::size_t>(found - channels.begin());
+    }
+    return places;
+}
+
 }  // namespace
 
 std::string damage_of_png(const std::filesystem::path& file) {
@@ -72,28 +91,25 @@ std::string damage_of_png(const std::filesystem::path& file) {
     return damage.empty() ? "" : fmt::format("{}: {}", file.string(), damage);
 }
 
-bool remake_preview(const std::filesystem::path& exr, double exposure, Sky sky,
-                    const std::filesystem::path& preview) {
+bool remake_preview(const std::filesystem::path& exr, const Settings& settings,
+                    std::span<const Stamp> overlay, const std::filesystem::path& preview) {
     const ImagePixels image(exr);
     const std::vector<ImageChannel>& channels = image.channels();
-    std::array<std::size_t, 4> places;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const auto found = std::find_if(
-            channels.begin(), channels.end(),
-            [&](const ImageChannel& c) { return c.name == std::string(1, "RGBA"[i]); });
-        if (found == channels.end()) return false;
-        places[i] = static_cast<std::size_t>(found - channels.begin());
-    }
+    const auto color = places_of(channels, ""), ghost = places_of(channels, "ghost.");
+    if (!color) return false;
     const Crop& window = image.window();
-    Preview small(window, exposure, sky);
+    Preview small(window, settings, overlay);
     image.for_each_block([&](int y0, int y1, const PixelPlanes& planes) {
         std::size_t pixel = 0;
-        const auto value = [&](std::size_t i) {
-            return value_at(planes, channels, places[i], pixel);
+        const auto values = [&](const ColorPlaces& places) {
+            std::array<float, 4> rgba;
+            for (std::size_t i = 0; i < 4; ++i)
+                rgba[i] = value_at(planes, channels, places[i], pixel);
+            return rgba;
         };
         for (int y = y0; y < y1; ++y)
             for (int x = window.x0; x < window.x1; ++x, ++pixel)
-                small.add(x, y, value(0), value(1), value(2), value(3));
+                small.add(x, y, {values(*color), ghost ? values(*ghost) : std::array<float, 4>{}});
     });
     small.write(preview);
     return true;

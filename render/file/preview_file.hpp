@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "render/description.hpp"
+#include "render/file/stamp.hpp"
 
 // Previews that lie beside their images.
 namespace tesserae::render {
@@ -13,11 +15,10 @@ namespace tesserae::render {
 std::string damage_of_png(const std::filesystem::path& file);
 
 /// Makes the preview of an image from the image, with the bytes that rendering it gave.
-/// @param exposure   [stops]
-/// @param sky        as the image was made
+/// @param settings, overlay   as it was made
 /// @return false: the image holds no colour
 /// @throws InputError   the image cannot be read; RunError: the preview cannot be written
-bool remake_preview(const std::filesystem::path& exr, double exposure, Sky sky,
-                    const std::filesystem::path& preview);
+bool remake_preview(const std::filesystem::path& exr, const Settings& settings,
+                    std::span<const Stamp> overlay, const std::filesystem::path& preview);
 
 }  // namespace tesserae::render

@@ -4,36 +4,17 @@
 #include <cmath>
 #include <vector>
 
+#include "render/material/pattern.hpp"
 #include "render/picture_needs.hpp"
 #include "render/tint.hpp"
 
 namespace tesserae::render {
 namespace {
 
-/// Patterns are read this part of pattern_size below the surface. Without it a face that lies on a
-/// boundary of cells would take either cell's colour, as rounding has it.
-constexpr double kPatternDepth = 1e-4;
-
 /// Lights are left out that add less than this part of a surface's light, all together.
 constexpr double kLeftOut = 1e-4;
 
-bool is_odd(double cell) { return cell - 2 * std::floor(0.5 * cell) != 0; }
-
-/// Where patterns have their origin: the body's, or for an infinite plane its point nearest to the
-/// world's.
-Vec4 pattern_origin(const Shape& shape) {
-    if (const auto* plane = std::get_if<Hyperplane>(&shape)) return plane->offset * plane->normal;
-    return Vec4::Zero();
-}
-
 }  // namespace
-
-Color albedo_at(const Material& m, const Vec4& point) {
-    if (m.pattern == Pattern::kNone) return m.albedo;
-    const Vec4 cell = (point.array() / m.pattern_size + 0.5).floor().matrix();
-    const double sum = m.pattern == Pattern::kChecker ? cell.sum() : cell.x();
-    return is_odd(sum) ? m.pattern_albedo : m.albedo;
-}
 
 Shading::Shading(const Picture& picture, const PlacedBodies& placed, const BodyTree& tree,
                  const LightSet& lights, const RoughReflections& rough)
@@ -54,10 +35,17 @@ void Shading::find_surface(const Hit& hit, const Ray& ray, Surface& s) const {
     s.material = &material;
     s.rough = rough_.of(material);
     s.time = ray.time;
-    s.albedo = material.pattern == Pattern::kNone
-                   ? material.albedo
-                   : albedo_at(material, local - pattern_origin(*body.shape) -
-                                             kPatternDepth * material.pattern_size * out);
+    if (material.pattern == Pattern::kNone) {
+        s.albedo = material.albedo;
+    } else {
+        const double origin = picture_.camera.position[3];
+        const double centre =
+            body.moves() ? placed_.pose(body, ray.time).centre[3] : body.centre[3];
+        s.albedo = pattern_albedo(material,
+                                  {*body.shape, local, out, origin + s.point[3], origin + centre});
+    }
+    const double jitter = picture_.appearance[type].hue_jitter;
+    if (jitter > 0) s.albedo = turned_hue(s.albedo, hue_turn_of(body.id, jitter));
     if (material.albedo_variation > 0) s.albedo *= tint_of(body.id, material.albedo_variation);
 }
 

@@ -12,12 +12,6 @@
 
 namespace tesserae::render {
 
-/// Colour of a material at a point of the body's frame. Checker: cells of edge pattern_size, one of
-/// them centred on the origin, coloured by the parity of their four indices. Stripes: slabs of
-/// width pattern_size across the body's x axis, one of them centred on the origin. Odd cells have
-/// the pattern's albedo.
-Color albedo_at(const Material& material, const Vec4& point);
-
 /// The thesis's picture: surfaces lit by suns, point and sphere lights, with shadows, and by an
 /// unoccluded sky.
 class Shading {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace tesserae::render {
 namespace {
@@ -133,9 +132,11 @@ SliceBounds unbounded(const PlacedBodies& placed, std::uint32_t index) {
     return s;
 }
 
-std::optional<SliceBounds> bounds_of(const PlacedBodies& placed, std::uint32_t index,
-                                     const Camera& camera, double max_distance,
-                                     const SliceRange& range) {
+}  // namespace
+
+std::optional<SliceBounds> slice_bounds_of(const PlacedBodies& placed, std::uint32_t index,
+                                           const Camera& camera, double max_distance,
+                                           const SliceRange& range) {
     const PlacedBody& body = placed.bodies[index];
     if (body.radius == kInfinite) return unbounded(placed, index);
     const Vec4 centre = camera.to_camera(body.centre);
@@ -158,13 +159,12 @@ std::optional<SliceBounds> bounds_of(const PlacedBodies& placed, std::uint32_t i
     return s;
 }
 
-}  // namespace
-
 std::vector<SliceBounds> slice_bounds(const PlacedBodies& placed, const Camera& camera,
                                       double max_distance, const SliceRange& range) {
     std::vector<std::optional<SliceBounds>> each(placed.bodies.size());
     tbb::parallel_for(std::size_t{0}, each.size(), [&](std::size_t i) {
-        each[i] = bounds_of(placed, static_cast<std::uint32_t>(i), camera, max_distance, range);
+        each[i] =
+            slice_bounds_of(placed, static_cast<std::uint32_t>(i), camera, max_distance, range);
     });
     std::vector<SliceBounds> slice;
     for (const auto& bounds : each)

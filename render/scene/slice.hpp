@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/camera/camera.hpp"
@@ -19,6 +20,12 @@ struct SliceBounds {
     double x0, y0, x1, y1;  ///< film points, closed
     std::uint32_t body;     ///< index into PlacedBodies::bodies
 };
+
+/// Of one body; nothing where no view ray can meet it.
+/// @param index, range   as in slice_bounds()
+std::optional<SliceBounds> slice_bounds_of(const PlacedBodies& placed, std::uint32_t index,
+                                           const Camera& camera, double max_distance,
+                                           const SliceRange& range);
 
 /// The bodies that the camera's hyperplane cuts anywhere in `range`, in front of the camera and
 /// within max_distance [m] of it, ascending by body. A body whose extent along the fourth axis

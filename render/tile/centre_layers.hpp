@@ -19,6 +19,7 @@ struct LayerPixel {
     float backward[2];        ///< and was in the last one
     Imath::half direct[3];    ///< radiance, see LightPath::direct
     Imath::half indirect[3];  ///< what the colour has beyond that
+    Imath::half ghost[4];     ///< see GhostLight
 };
 
 /// From one frame to where what it shows is in another.

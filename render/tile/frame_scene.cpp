@@ -94,6 +94,12 @@ FrameScene::FrameScene(const Picture& picture, bool wants_color)
                                                         ShutterPart{&motions_, begin, end}, lights_,
                                                         rough_, reach_of(picture, rays_)));
     }
+    for (int cell = 0; needs_.ghosts && cell < sheet_.cells(); ++cell) {
+        const double own = sheet_.fourth(cell);
+        ghosts_.push_back(std::make_unique<const Ghosts>(
+            opening_.placed, camera_, picture.settings,
+            sheet_.cells() > 1 ? SliceRange{own, own} : rays_.range(), rays_.reach()));
+    }
     const double far = picture.settings.ray_limit();
     if (!is_pinhole()) {
         view_.emplace(opening_.placed, camera_, picture.settings, rays_.range(), rays_.reach());

@@ -10,6 +10,7 @@
 #include "render/integrator/integrator.hpp"
 #include "render/picture_needs.hpp"
 #include "render/sampling/filter.hpp"
+#include "render/scene/ghosts.hpp"
 #include "render/scene/view_scene.hpp"
 
 namespace tesserae::render {
@@ -69,6 +70,10 @@ class FrameScene {
     bool is_pinhole() const { return is_still() && rays_.is_pinhole(); }
     /// For the opening's view rays where there is no slice().
     const ViewScene& view() const { return *view_; }
+    /// Beside a cell's slice; none where the picture has no ghosts.
+    const Ghosts* ghosts(const SliceSheet::Cell& cell) const {
+        return ghosts_.empty() ? nullptr : ghosts_[static_cast<std::size_t>(cell.number)].get();
+    }
 
   private:
     const Picture& picture_;
@@ -87,6 +92,7 @@ class FrameScene {
     std::vector<std::unique_ptr<Interval>> intervals_;  ///< of equal length, one after the other
     std::vector<SliceBounds> slice_;
     std::optional<ViewScene> view_;
+    std::vector<std::unique_ptr<const Ghosts>> ghosts_;  ///< by cell
 };
 
 }  // namespace tesserae::render

@@ -36,12 +36,13 @@ struct View {
 
     std::uint32_t number;  ///< of the sample, in its half
     const Interval* interval;
-    ViewRay in_slice;  ///< of the opening; of other times none
+    ViewRay in_slice;  ///< of the opening; of other times where ghosts are asked for
     Ray ray;
     bool is_met = false;
     Surface met;
 
     const Surface* surface() const { return is_met ? &met : nullptr; }
+    Hit hit() const { return is_met ? Hit{met.distance, met.body} : Hit{}; }
 };
 
 /// A sample's numbers for lens, slice and time.
@@ -110,6 +111,7 @@ class TileRays {
     std::array<Half, 2> halves_;  ///< for adaptive sampling
     int least_, most_;            ///< samples of a pixel
     bool wants_centre_, wants_samples_;
+    const Ghosts* ghosts_ = nullptr;  ///< beside the pixel's slice, if they are drawn
     FilmList list_;
     std::vector<View> views_;  ///< the batch under way, what it meets, and the light along it
     std::vector<Draw> draws_;
@@ -154,7 +156,8 @@ TileImage render_tile(const FrameScene& scene, const Tile& tile, const std::atom
     image.pixels.resize(static_cast<std::size_t>(image.width()) *
                         static_cast<std::size_t>(tile.y1 - tile.y0));
     const Channels& channels = scene.picture().settings.channels;
-    if (channels.any_layer()) image.layers.resize(image.pixels.size(), CentreLayers::empty());
+    if (scene.picture().settings.has_layers())
+        image.layers.resize(image.pixels.size(), CentreLayers::empty());
     if (channels.cryptomatte) image.mattes.resize(image.pixels.size());
     TileRays rays(scene, tile);
     constexpr int kSide = FilmList::kSide;
@@ -184,6 +187,7 @@ Pixel TileRays::pixel(int x, int y, const Extras& extras) {
     pixel.depth = std::numeric_limits<float>::infinity();
     const auto cell = scene_.sheet().cell_of(x, y);
     if (!cell) return pixel;
+    ghosts_ = scene_.ghosts(*cell);
 
     Filtered sum = empty_sum(0);
     if (wants_centre_) {
@@ -235,6 +239,10 @@ void TileRays::store(const Averages& averages, int x, int y, Pixel& pixel, Layer
         }
         is_clamped |= is_beyond_half(averages.direct) || is_beyond_half(averages.indirect);
     }
+    if (ghosts_) {
+        for (int i = 0; i < 3; ++i) layers->ghost[i] = to_half(averages.ghost.color[i]);
+        layers->ghost[3] = to_half(averages.ghost.alpha);
+    }
     if (is_clamped) stats.count_clamped({y, x, 0}, 1);
 }
 
@@ -251,8 +259,8 @@ TileRays::TileRays(const FrameScene& scene, const Tile& tile)
     most_ = scene.needs().more_samples && scene.wants_color() ? settings_.most_samples()
                                                               : settings_.samples;
     wants_centre_ = most_ == 1 || scene.needs().centre_rays;
-    wants_samples_ =
-        most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance || c.cryptomatte);
+    wants_samples_ = most_ > 1 && (scene.wants_color() || c.albedo || c.samples || c.variance ||
+                                   c.cryptomatte || scene.needs().ghosts);
 }
 
 Averages TileRays::adapted(const Cell& cell, int x, int y, const Extras& extras) {
@@ -316,7 +324,8 @@ void TileRays::add_samples_of_lens(const Cell& cell, int x, int y, std::uint64_t
             add_view(draw.number, scene_.rays().sample(cell, film, u));
         } else {
             const double time = scene_.time(draw.u[3]);
-            views_.emplace_back(draw.number, scene_.at(time), ViewRay{},
+            views_.emplace_back(draw.number, scene_.at(time),
+                                ghosts_ ? scene_.rays().sample(cell, film, u) : ViewRay{},
                                 scene_.view_ray(cell, film, u, time));
         }
     }
@@ -383,6 +392,7 @@ void TileRays::look_out_of_glass() {
 void TileRays::add_radiance(Filtered& sum, const Half& half, int x, int y) {
     for (const View& view : views_) {
         ++sum.count;
+        if (ghosts_) sum.ghost += ghosts_->along(view.in_slice, view.hit(), stats);
         if (!view.is_met) continue;
         sum.alpha += 1;
         sum.albedo += view.met.albedo;

@@ -6,13 +6,18 @@
 
 namespace tesserae::scenes {
 
-std::vector<std::string> draft_overrides(const render::Settings& settings) {
+std::vector<std::string> draft_overrides(const Scene& scene) {
+    const render::Settings& settings = scene.render;
     constexpr int kSmaller = 3, kFewer = 4;
     const auto smaller = [](int pixels) { return (pixels + kSmaller - 1) / kSmaller; };
     std::vector<std::string> sets = {
         fmt::format("render.size=[{}, {}]", smaller(settings.width), smaller(settings.height)),
         fmt::format("render.samples={}", std::max(1, settings.samples / kFewer)),
         "render.integrator=\"direct\"", "render.noise_target=0"};
+    if (!scene.gives_ghost_depth) {
+        sets.push_back("render.ghost_depth=1");
+        sets.push_back("render.ghosts=\"over\"");
+    }
     if (settings.crop) {
         const render::Crop& c = *settings.crop;
         sets.push_back(fmt::format("render.crop=[{}, {}, {}, {}]", c.x0 / kSmaller, c.y0 / kSmaller,

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/description.hpp"
+#include "scenes/scene.hpp"
 
 namespace tesserae::scenes {
 
@@ -11,7 +11,8 @@ namespace tesserae::scenes {
 constexpr int kDraftStride = 2;
 
 /// Entries for load_scene() that make a quick picture of a scene's: a third as wide and high, a
-/// quarter of the samples, direct light. With every second frame it costs a tenth, or less.
-std::vector<std::string> draft_overrides(const render::Settings& settings);
+/// quarter of the samples, direct light, ghosts over it unless the scene says how deep they are.
+/// With every second frame it costs a tenth, or less.
+std::vector<std::string> draft_overrides(const Scene& scene);
 
 }  // namespace tesserae::scenes

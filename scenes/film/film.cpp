@@ -184,6 +184,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     std::optional<render::Mattes> mattes;
     if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);
 
+    const OverlayPainter painter(scene);
     const int parts = parts_of_frame(scene);
     std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
@@ -196,7 +197,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         const render::FrameFiles files = {report.frames / (stem + ".exr"),
                                           folder / "preview" / (stem + ".png")};
         report.preview = files.preview;
-        if (is_done(scene, info, files, replace)) {
+        if (is_done(scene, info, files, replace, painter)) {
             progress.start_at(++report.kept);
             if (parts > 1) remove_parts(files.exr, parts);
             continue;
@@ -204,6 +205,10 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         Exposure exposure(scene, poses, info.frame);
         render::Picture picture = exposure.picture(scene, info.frame);
         if (mattes) picture.mattes = &*mattes;
+        std::vector<render::Stamp> overlay;
+        if (!painter.is_empty())
+            overlay = painter.stamps(info.frame, SlicePose(exposure.opening.camera));
+        picture.overlay = overlay;
         const auto warn = [&](const render::FrameStats& stats) {
             for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
                                             clamped_pixels_text(stats, scene, info.frame)})
@@ -219,7 +224,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         }
         if (shown && !render::needs_of(picture).moving_noise &&
             exposure.looks_like(shown->exposure, scene)) {
-            render::copy_frame(shown->files, picture, info, files);
+            render::copy_frame(shown->files, painter.is_empty(), picture, info, files);
             ++report.copied;
         } else {
             warn(parts > 1 ? render_in_parts(picture, info, files, parts,

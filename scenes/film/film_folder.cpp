@@ -135,7 +135,7 @@ FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
 }
 
 bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
-             Replace replace) {
+             Replace replace, const OverlayPainter& painter) {
     const FrameCheck there = check_frame(scene, info.frame, info.motion_version, files);
     switch (there.state) {
         case FrameState::kMissing:
@@ -143,7 +143,7 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
         case FrameState::kComplete:
             return true;
         case FrameState::kLacksPreview:
-            if (mend_preview(scene, files, there.reason)) return true;
+            if (mend_preview(scene, info.frame, files, painter, there.reason)) return true;
             break;
         case FrameState::kOther:
             if (replace != Replace::kNothing) return false;
@@ -158,11 +158,12 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
     return false;
 }
 
-bool mend_preview(const Scene& scene, const render::FrameFiles& files, const std::string& reason) {
+bool mend_preview(const Scene& scene, int frame, const render::FrameFiles& files,
+                  const OverlayPainter& painter, const std::string& reason) {
     try {
-        if (!render::remake_preview(files.exr, scene.render.exposure, scene.render.sky,
-                                    files.preview))
-            return false;
+        std::vector<render::Stamp> overlay;
+        if (!painter.is_empty()) overlay = painter.stamps(frame, SlicePose(files.exr));
+        if (!render::remake_preview(files.exr, scene.render, overlay, files.preview)) return false;
     } catch (const InputError& error) {
         // The image's pixels are damaged too, which its header does not show.
         tell(error.what());

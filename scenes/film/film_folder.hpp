@@ -7,6 +7,7 @@
 #include "render/file/copied_frame.hpp"
 #include "render/file/image_info.hpp"
 #include "render/picture.hpp"
+#include "scenes/overlay/stamps.hpp"
 #include "scenes/scene.hpp"
 
 // A folder holds the frames of one scene; its scene.toml is the effective text of that scene.
@@ -76,12 +77,13 @@ FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
 /// Makes a preview that is missing or damaged from its image, and tells it on standard error.
 /// @return false: the image holds no colour, or is damaged as well
 /// @throws RunError   the preview cannot be written
-bool mend_preview(const Scene& scene, const render::FrameFiles& files, const std::string& reason);
+bool mend_preview(const Scene& scene, int frame, const render::FrameFiles& files,
+                  const OverlayPainter& painter, const std::string& reason);
 
 /// Whether a frame is there already. What is damaged is made again, and that is told on standard
 /// error; a preview is made from its image where that is possible.
 /// @throws InputError   a frame of something else is there, and may not be replaced
 bool is_done(const Scene& scene, const render::FrameInfo& info, const render::FrameFiles& files,
-             Replace replace);
+             Replace replace, const OverlayPainter& painter);
 
 }  // namespace tesserae::scenes

@@ -120,6 +120,7 @@ std::vector<int> numbers_in(const fs::path& folder, const Scene& scene, std::str
 
 /// Makes previews that are missing or damaged from their images.
 void mend_previews(const Scene& scene, const fs::path& folder) {
+    const OverlayPainter painter(scene);
     std::vector<int> numbers;
     std::ranges::set_union(numbers_in(folder / "frames", scene, ".exr"),
                            preview_numbers(scene, folder), std::back_inserter(numbers));
@@ -131,7 +132,7 @@ void mend_previews(const Scene& scene, const fs::path& folder) {
                                        : fmt::format("{}: is missing", files.preview.string());
         if (damage.empty()) continue;
         require_frame_of(scene, files.exr, number);
-        if (!fs::exists(files.exr) || !mend_preview(scene, files, damage))
+        if (!fs::exists(files.exr) || !mend_preview(scene, number, files, painter, damage))
             throw InputError(damage +
                              "; the same command that made the others makes that frame again");
     }

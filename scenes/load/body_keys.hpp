@@ -233,6 +233,10 @@ void surface_keys(auto& self, const auto& visit, const MaterialNumbers& material
     visit({"material", "", "The body looks as the material of this name says.", "a grey of 0.8"},
           self.material, MaterialName{materials});
     visit({"visible", "", "The body is seen and casts shadows."}, self.appearance.visible);
+    visit({"hue_jitter", "",
+           "The hue of each body is turned at random by up to half this part of the colour circle "
+           "to either side."},
+          self.appearance.hue_jitter, RealOrUnwritten{Interval{0, 1}});
 }
 
 struct LatticeCount {

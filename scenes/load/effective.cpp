@@ -70,7 +70,8 @@ class Walker {
                 return true;
             case Lines::kMotion:
                 if (header_ == "[physics]") return key() != "duration";
-                return is_of_bodies && key() != "name" && key() != "material" && key() != "visible";
+                return is_of_bodies && key() != "name" && key() != "material" &&
+                       key() != "visible" && key() != "hue_jitter";
             case Lines::kLook:
                 return header_ != "[physics]" || key() != "duration";
             case Lines::kNames:

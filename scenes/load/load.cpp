@@ -55,9 +55,7 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     overrides.apply(document.root(), text.body_count);
 
     TableReader root(document.root(), origin, "scene file");
-    for (const char* table :
-         {"scene", "physics", "material", "body", "lattice", "camera", "light", "render"})
-        root.has(table);
+    for (const std::string_view table : kSceneTables) root.has(table);
     EffectiveWriter out;
     MaterialNumbers materials;
     ErrorList errors;
@@ -71,6 +69,7 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     errors.collect([&] { load_camera(root, origin, scene, out); });
     errors.collect([&] { load_lights(root, origin, scene, out); });
     errors.collect([&] { load_render(root, origin, scene, out); });
+    errors.collect([&] { load_overlay(root, origin, scene, out); });
     errors.collect([&] { root.finish(); });
     errors.require_none();
     require_view(scene, origin);

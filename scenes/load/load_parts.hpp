@@ -36,5 +36,6 @@ void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene);
 void require_view(const Scene& scene, const Origin& origin);
 void load_lights(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 void load_render(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+void load_overlay(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 
 }  // namespace tesserae::scenes

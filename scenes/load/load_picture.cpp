@@ -95,14 +95,17 @@ void load_render(TableReader& root, const Origin& origin, Scene& scene, Effectiv
         TableReader reader(*table, origin, "[render]");
         const ReadKeys read{reader};
         s.max_samples = 1;
-        frame_keys(s, read), pixel_keys(s, read), ray_keys(s, read), file_keys(s, read);
+        scene.gives_ghost_depth = reader.has("ghost_depth");
+        frame_keys(s, read), pixel_keys(s, read), ray_keys(s, read), ghost_keys(s, read);
+        file_keys(s, read);
         // At least `samples`, so that --samples alone can ask for more than the scene's most.
         s.max_samples = std::max(s.samples, s.max_samples);
         reader.finish();
     }
     const WriteKeys write{out};
     out.table("[render]");
-    frame_keys(s, write), ray_keys(s, write), pixel_keys(s, write), file_keys(s, write);
+    frame_keys(s, write), ray_keys(s, write), pixel_keys(s, write), ghost_keys(s, write);
+    file_keys(s, write);
 }
 
 }  // namespace tesserae::scenes

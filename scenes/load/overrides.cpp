@@ -84,11 +84,10 @@ Overrides::Overrides(std::span<const std::string> sets) {
             entry->value->as_table() == nullptr || entry->value->as_table()->is_inline();
         if (!is_value || entry->path.empty()) entry->fail("expected KEY=VALUE");
         const std::string& table = entry->path.front();
-        constexpr std::string_view kTables[] = {"scene",   "physics", "material", "body",
-                                                "lattice", "camera",  "light",    "render"};
-        if (std::find(std::begin(kTables), std::end(kTables), table) == std::end(kTables))
+        if (std::find(std::begin(kSceneTables), std::end(kSceneTables), table) ==
+            std::end(kSceneTables))
             entry->fail(fmt::format("no table is called \"{}\"{}", printable(table),
-                                    did_you_mean(table, kTables)));
+                                    did_you_mean(table, kSceneTables)));
         const bool is_array =
             table == "body" || table == "lattice" || table == "material" || table == "light";
         if (entry->path.size() < (is_array ? 3 : 2))

@@ -13,6 +13,10 @@
 
 namespace tesserae::scenes {
 
+/// The tables that a scene file may have.
+inline constexpr std::string_view kSceneTables[] = {
+    "scene", "physics", "material", "body", "lattice", "camera", "light", "render", "overlay"};
+
 /// The `--set KEY=VALUE` entries of a command line. KEY is a TOML key: `physics.iterations`,
 /// `camera.position`, `body.NAME.mass`, `lattice.NAME.count`, `material.NAME.albedo`,
 /// `light.0.strength` (lights have no names: their number in the file, from 0). NAME is the one in

@@ -23,11 +23,14 @@ constexpr Interval kFieldOfView{0, 180, true, true};
 
 // In the order of the enumerations in render/description.hpp.
 constexpr std::string_view kMaterialKinds[] = {"diffuse", "mirror", "glass", "rough"};
-constexpr std::string_view kPatterns[] = {"none", "checker", "stripes"};
+constexpr std::string_view kPatterns[] = {"none", "checker", "stripes", "noise",
+                                          "grid", "edges",   "cells",   "w"};
+constexpr std::string_view kWOf[] = {"point", "body"};
 constexpr std::string_view kPictureIntegrators[] = {"direct", "path"};
 constexpr std::string_view kIntersectors[] = {"trace", "analytic"};
 constexpr std::string_view kFilters[] = {"box", "triangle", "gaussian", "blackman-harris"};
 constexpr std::string_view kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
+constexpr std::string_view kGhostsIn[] = {"layer", "over"};
 constexpr std::string_view kSkies[] = {"opaque", "transparent"};
 constexpr Flag<render::Channels> kChannels[] = {{"color", &render::Channels::color},
                                                 {"depth", &render::Channels::depth},
@@ -77,14 +80,25 @@ void material_keys(auto& self, const auto& visit) {
            "through at each surface.",
            "`[0.8, 0.8, 0.8]`, of glass `[1.0, 1.0, 1.0]`"},
           self.albedo, AlbedoOf{self.kind});
-    visit({"pattern", "",
-           "Cells or stripes of a second albedo lie in the body's own four axes; the slice cuts "
-           "them as it cuts the body."},
-          self.pattern, Names{kPatterns});
-    visit({"pattern_albedo", "", "The pattern's other cells have this albedo."},
-          self.pattern_albedo, kUnit);
-    visit({"pattern_size", "m", "A cell of the pattern has this edge, a stripe this width."},
+    visit(
+        {"pattern", "",
+         "The albedo changes over the body: checker, stripes, noise and grid lie in its own four "
+         "axes, and the slice cuts them as it cuts the body; edges are lines where two cells of a "
+         "box or a polytope meet, cells gives each of them a hue; w shows where in the world's w "
+         "the body is, blue on the negative side, white at 0, orange on the positive side."},
+        self.pattern, Names{kPatterns});
+    visit(
+        {"pattern_albedo", "",
+         "Every second cell or stripe, the lines, or the other colour of noise have this albedo."},
+        self.pattern_albedo, kUnit);
+    visit({"pattern_size", "m",
+           "A cell of the pattern has this edge, a stripe this width; w has its full colours this "
+           "far from 0."},
           self.pattern_size, Rule::kPositive);
+    visit({"line_width", "m", "Lines of grid and edges are this wide."}, self.line_width,
+          RealOrUnwritten{Interval{0, kLargest, true}, render::Material{}.line_width});
+    visit({"w_of", "", "Pattern w shows where each point of the surface is, or the body's centre."},
+          self.w_of, NamesOrUnwritten{{kWOf}});
     visit({"albedo_variation", "",
            "Bodies of this material differ in brightness and hue by up to this part."},
           self.albedo_variation, RealOrUnwritten{kUnit});
@@ -343,6 +357,20 @@ void ray_keys(auto& self, const auto& visit) {
     visit({"tile", "pixels",
            "Threads take and EXR files store tiles of this edge; it changes no pixel."},
           self.tile, IntegerRange{8, 512});
+}
+/// [render]: bodies beside the slice
+void ghost_keys(auto& self, const auto& visit) {
+    visit({"ghost_depth", "m",
+           "Bodies that the slice misses by less than this are drawn as ghosts, the paler the "
+           "farther; the EXR files hold them as layer `ghost`; 0 draws none."},
+          self.ghost_depth, RealOrUnwritten{kNotNegative});
+    visit({"ghosts", "",
+           "Ghosts are a layer of the EXR files only, or laid over previews and films as well."},
+          self.ghosts, NamesOrUnwritten{{kGhostsIn}});
+    visit({"ghost_minus", "", "Ghosts on the negative side of the fourth axis have this color."},
+          self.ghost_colors[0], ColorOrUnwritten{kUnit, render::kSideColors[0]});
+    visit({"ghost_plus", "", "Ghosts on the positive side of the fourth axis have this color."},
+          self.ghost_colors[1], ColorOrUnwritten{kUnit, render::kSideColors[1]});
 }
 /// [render]: the files
 void file_keys(auto& self, const auto& visit) {

@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "scenes/load/body_keys.hpp"
 #include "scenes/load/nearest_name.hpp"
+#include "scenes/load/overlay_keys.hpp"
 #include "scenes/load/picture_keys.hpp"
 
 namespace tesserae::scenes {
@@ -230,6 +231,8 @@ std::vector<Table> all_tables() {
     const render::CameraDescription camera;
     const CameraKey key;
     const render::Settings settings;
+    const Overlay overlay;
+    const Caption caption;
     using Visit = const DescribeKeys&;
     return {
         {"scene",
@@ -267,8 +270,17 @@ std::vector<Table> all_tables() {
          {part_of("",
                   [&](Visit visit) {
                       frame_keys(settings, visit), pixel_keys(settings, visit);
-                      ray_keys(settings, visit), file_keys(settings, visit);
+                      ray_keys(settings, visit), ghost_keys(settings, visit);
+                      file_keys(settings, visit);
                   })}},
+        {"overlay",
+         "[overlay]",
+         "What is written over previews and films; the EXR files stay as they are.",
+         {part_of("", [&](Visit visit) { overlay_keys(overlay, visit); })}},
+        {"overlay.caption",
+         "[[overlay.caption]]",
+         "A line of text that is shown for some time.",
+         {part_of("", [&](Visit visit) { caption_keys(caption, visit); })}},
     };
 }
 

@@ -81,7 +81,17 @@ struct RealOrUnwritten {
     }
 };
 
-/// The same for integers and switches.
+/// The same for colours, integers and switches.
+struct ColorOrUnwritten {
+    Interval interval;
+    render::Color unwritten;
+    void read(TableReader& reader, const char* key, render::Color& value) const {
+        reader.read(key, value, interval);
+    }
+    void write(EffectiveWriter& out, const char* key, const render::Color& value) const {
+        if ((value != unwritten).any()) out.key(key, value);
+    }
+};
 struct IntegerOrUnwritten {
     IntegerRange range;
     std::int64_t unwritten = 0;

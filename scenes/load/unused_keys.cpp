@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "render/picture_needs.hpp"
 #include "scenes/load/load_parts.hpp"
 
@@ -40,6 +42,8 @@ void check_render(Unused unused, const Scene& scene) {
     unused(!is_random, "lock_noise", "nothing in the picture is random");
     unused(!scene.physics && scene.camera.shutter == 0 && !s.channels.motion, "frames_per_second",
            "a still: without [physics] there is one frame");
+    for (const char* key : {"ghosts", "ghost_minus", "ghost_plus"})
+        unused(!s.has_ghosts(), key, "ghost_depth = 0: no ghosts are drawn");
     const bool one = s.most_samples() == 1;
     unused(one, "filter", "one sample, which is at the pixel's centre");
     unused(one, "filter_width", "one sample, which is at the pixel's centre");
@@ -49,9 +53,18 @@ void check_material(Unused unused, const render::Material& m) {
     using Kind = render::MaterialKind;
     unused(m.kind != Kind::kGlass, "ior", "kind is not \"glass\"");
     unused(m.kind != Kind::kRough, "roughness", "kind is not \"rough\"");
-    const bool is_plain = m.pattern == render::Pattern::kNone;
-    unused(is_plain, "pattern_albedo", "the material has no pattern");
-    unused(is_plain, "pattern_size", "the material has no pattern");
+    using render::Pattern;
+    const bool is_plain = m.pattern == Pattern::kNone;
+    const bool has_lines = m.pattern == Pattern::kGrid || m.pattern == Pattern::kEdges;
+    const char* plain = "the material has no pattern";
+    unused(is_plain, "pattern_albedo", plain);
+    unused(m.pattern == Pattern::kCells || m.pattern == Pattern::kW, "pattern_albedo",
+           "the pattern makes its own colours");
+    unused(is_plain, "pattern_size", plain);
+    unused(m.pattern == Pattern::kCells || m.pattern == Pattern::kEdges, "pattern_size",
+           "the pattern is as large as the body");
+    unused(!has_lines, "line_width", "pattern is not \"grid\" or \"edges\"");
+    unused(m.pattern != Pattern::kW, "w_of", "pattern is not \"w\"");
 }
 
 }  // namespace
@@ -77,6 +90,15 @@ void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene) {
         unused(scene.camera.aperture == 0, "focus_distance", "aperture = 0: all is sharp");
         unused(!scene.physics && scene.camera_keys.empty() && scene.camera.shutter > 0, "shutter",
                "a still without [physics] and [[camera.key]]: nothing moves");
+    }
+    if (const auto* table = root.table("overlay")) {
+        TableReader reader(*table, origin, "[overlay]");
+        Unused unused(reader, lines);
+        const bool turns = std::any_of(scene.camera_keys.begin(), scene.camera_keys.end(),
+                                       [](const CameraKey& key) { return key.fourth.has_value(); });
+        unused(scene.overlay.dial && !turns, "dial", "no [[camera.key]] turns the slice");
+        for (const char* key : {"text_size", "color", "font"})
+            unused(scene.overlay.is_empty(), key, "the overlay shows nothing");
     }
     if (const auto* table = root.table("render")) {
         TableReader reader(*table, origin, "[render]");

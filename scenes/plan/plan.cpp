@@ -39,6 +39,8 @@ constexpr std::uint64_t kRenderProgramBytes = 100'000'000, kSimulateProgramBytes
 constexpr std::uint64_t kPixelBytes = 200;
 /// The same of its further layers, and of its Cryptomattes.
 constexpr std::uint64_t kLayerBytes = 100, kMatteBytes = 200;
+/// Of a ghost beside one slice, with its bounds in a hierarchy.
+constexpr std::uint64_t kGhostBytes = 350;
 /// Of a body, with its name and what says so in a header.
 constexpr std::uint64_t kMatteNameBytes = 200;
 /// More states for vectors of motion: the neighbours of a frame and of the one before it.
@@ -149,7 +151,9 @@ std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads
                           plan.bodies * (kRenderStates * kStateBytes + kPictureBytes) +
                           kTilesOfThread * threads * tile * kPixelBytes;
     const render::Channels& channels = scene.render.channels;
-    if (channels.any_layer()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
+    if (scene.render.has_layers()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
+    if (scene.render.has_ghosts())
+        bytes += plan.bodies * static_cast<std::uint64_t>(scene.camera.slices) * kGhostBytes;
     if (channels.cryptomatte)
         bytes += kTilesOfThread * threads * tile * kMatteBytes + plan.bodies * kMatteNameBytes;
     if (channels.motion) bytes += plan.bodies * kNeighbourStates * kStateBytes;

@@ -87,6 +87,13 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
     else
         plan.decide("thick slice", needs.thick_slice,
                     fmt::format("averaged over {} m", c.slice_thickness), "slice_thickness = 0");
+    plan.decide(
+        "ghosts", needs.ghosts,
+        fmt::format("ghost_depth = {}: bodies beside the slice are drawn {}",
+                    scene.render.ghost_depth,
+                    scene.render.ghosts == render::GhostsIn::kOver ? "over previews and films"
+                                                                   : "in layer ghost"),
+        "ghost_depth = 0");
     plan.decide("moving camera", is_moving, fmt::format("{} keys", scene.camera_keys.size()),
                 "no [[camera.key]]");
     plan.decide("moving noise", needs.moving_noise, "every frame has random numbers of its own",
@@ -120,6 +127,8 @@ void decide_picture(const Scene& scene, Plan& plan) {
                 "albedo_variation = 0 of all materials");
     plan.decide("transparent sky", scene.render.sky == render::Sky::kTransparent,
                 "view rays that meet nothing bring no light", "sky = \"opaque\"");
+    plan.decide("overlay", !scene.overlay.is_empty(),
+                "text is drawn over previews and films, not into images", "nothing in [overlay]");
     for (const auto& [name, member] : kChannels)
         if (!(scene.render.channels.*member))
             plan.decide(fmt::format("channel {}", name), false, "", "not in channels");

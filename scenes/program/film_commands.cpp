@@ -107,7 +107,7 @@ class Filming {
           trajectory_(line.trajectory),
           work_(line_) {
         if (line.draft) {
-            for (std::string& set : draft_overrides(work_.scene.render))
+            for (std::string& set : draft_overrides(work_.scene))
                 line_.sets.push_back(std::move(set));
             work_ = Work(line_);
         }

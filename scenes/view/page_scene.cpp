@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 Json json_list(const Vec4& v) { return {v[0], v[1], v[2], v[3]}; }
 Json json_list(const render::Color& c) { return {c[0], c[1], c[2]}; }
+Json json_list(const std::array<render::Color, 2>& c) { return {json_list(c[0]), json_list(c[1])}; }
 
 /// Hulls take most of the room that shapes take: equal shapes share one.
 class Hulls {
@@ -85,24 +86,27 @@ Json materials_of(const Scene& scene) {
                              {"pattern", kPatterns[static_cast<std::size_t>(m.pattern)]},
                              {"pattern_albedo", json_list(m.pattern_albedo)},
                              {"pattern_size", m.pattern_size},
+                             {"line_width", m.line_width},
+                             {"w_of", kWOf[static_cast<std::size_t>(m.w_of)]},
                              {"emission", json_list(m.emission)}});
     return materials;
 }
 
-/// What bodies' albedos are multiplied by, three bytes a body: what a screen tells apart. Empty
-/// where no material varies.
+/// What bodies' albedos are multiplied by and how far their hues are turned, in 256ths of the
+/// colour circle, four bytes a body: what a screen tells apart. Empty where no body differs.
 std::string tints_of(const Scene& scene) {
-    const auto variation = [&](BodyId id) {
-        const render::Appearance& a = scene.appearance[scene.bodies.type[id]];
-        return scene.materials[a.material].albedo_variation;
-    };
     std::string bytes;
+    const auto add = [&](double value) {
+        bytes += static_cast<char>(static_cast<unsigned char>(std::lround(value) & 0xff));
+    };
     bool any = false;
     for (BodyId id = 0; id < scene.bodies.size(); ++id) {
-        any = any || variation(id) > 0;
-        const render::Color tint = render::tint_of(id, variation(id));
-        for (int i = 0; i < 3; ++i)
-            bytes += static_cast<char>(static_cast<unsigned char>(std::lround(255 * tint[i])));
+        const render::Appearance& look = scene.appearance[scene.bodies.type[id]];
+        const double variation = scene.materials[look.material].albedo_variation;
+        any = any || variation > 0 || look.hue_jitter > 0;
+        const render::Color tint = render::tint_of(id, variation);
+        for (int i = 0; i < 3; ++i) add(255 * tint[i]);
+        add(256 * render::hue_turn_of(id, look.hue_jitter));
     }
     return any ? bytes : std::string();
 }
@@ -147,6 +151,9 @@ std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moment
     json["size"] = {scene.render.width, scene.render.height};
     json["exposure"] = scene.render.exposure;
     json["max_distance"] = scene.render.max_distance;
+    json["ghost_depth"] = scene.render.ghost_depth;
+    json["ghost_colors"] = json_list(scene.render.ghost_colors);
+    json["side_colors"] = json_list(render::kSideColors);
     json["times"] = Json::array();
     for (const ViewMoment& moment : moments) json["times"].push_back(moment.time);
     // A camera that stands still is there once.

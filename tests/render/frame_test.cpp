@@ -329,8 +329,7 @@ TEST(Frame, PreviewOfATransparentSkyHasItsAlpha) {
     EXPECT_GT(clear, 100);
     EXPECT_GT(lamp, 20);
     // From the image the same bytes are made again.
-    ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings.exposure, scene.settings.sky,
-                               folder / "b.png"));
+    ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings, {}, folder / "b.png"));
     EXPECT_EQ(testing::content(folder / "b.png"), testing::content(folder / "a.png"));
 }
 

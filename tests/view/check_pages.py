@@ -228,10 +228,10 @@ def check_controls(browser, program, folder):
 
 
 def check_ghosts(browser):
-    """The ball is 1.5 m off the slice at 0.5 s: a ghost that fades to nothing at that depth."""
+    """The ball is 0.5 m off the slice at 0.5 s: a ghost that fades to nothing at that depth."""
     browser.run("tesserae.page.goTo(0.5); tesserae.page.options.shadows = false")
     pictures = []
-    for depth in (0, 1.502, 6):
+    for depth in (0, 0.502, 6):
         browser.run(f"tesserae.page.options.ghostDepth = {depth}")
         page_ids(browser, 160, 90)
         pictures.append(numpy.array(browser.run(

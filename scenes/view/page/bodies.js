@@ -23,7 +23,7 @@ class PlacedBodies {
   }
 
   /// @param camera       as View.shown()
-  /// @param ghostDepth   how far off the slice a ghost's centre may be [m]; 0: no ghosts
+  /// @param ghostDepth   ghosts are bodies that the slice misses by less than this [m]; 0: none
   place(camera, ghostDepth, maxDistance) {
     const {scene, poses} = this;
     this.order = [];
@@ -50,15 +50,18 @@ class PlacedBodies {
     const seen = (a) => a[0] * x + a[1] * y + a[2] * z + a[3] * w;
     const offset = seen(camera.fourth);
     this.offset[body] = offset;
-    const isSolid = isCut(this.scene, type, texels, at + 12, -offset);
-    const isGhost = !isSolid && Math.abs(offset) < ghostDepth;
-    texels[at + 20] = poses.type[body];
-    texels[at + 21] = isGhost ? offset : 0;
-    texels[at + 23] = isGhost ? 1 - Math.abs(offset) / ghostDepth : 1;
     this.state[body] = 0;
-    if (!isSolid && !isGhost) return;
+    if (Math.abs(offset) > type.bound + ghostDepth) return;
+    const [low, high] = extentAlong(this.scene, type, texels, at + 12);
+    const gap = Math.max(offset + low, -(offset + high)), isSolid = gap <= 0;
+    if (!isSolid && gap >= ghostDepth) return;
+    // A ghost is cut by the slice through its centre, or as near to it as the depth allows.
+    const shift = isSolid ? 0 : clamp(offset, -ghostDepth, ghostDepth), off = offset - shift;
+    texels[at + 20] = poses.type[body];
+    texels[at + 21] = shift;
+    texels[at + 23] = isSolid ? 1 : 1 - gap / ghostDepth;
 
-    const radius = isGhost ? type.bound : Math.sqrt(type.bound * type.bound - offset * offset);
+    const radius = Math.sqrt(type.bound * type.bound - off * off);
     const right = seen(camera.right), up = seen(camera.up), forward = seen(camera.forward);
     const nearest = Math.max(0, Math.hypot(right, up, forward) - radius);
     if (forward + radius < 0 || nearest > maxDistance) return;

@@ -2,7 +2,7 @@
 // The scene's shapes and materials as textures of four floats a texel; shapes.glsl reads them.
 
 const kKinds = {sphere: 0, capsule: 1, box: 2, plane: 3, hull: 4, product: 5};
-const kPatterns = {none: 0, checker: 1, stripes: 2};
+const kPatterns = {none: 0, checker: 1, stripes: 2, noise: 3, grid: 4, edges: 5, cells: 6, w: 7};
 
 /// Two texels a type: (kind, radius of the ball that holds it, first, count), (material, 0, 0, 0);
 /// then `count` texels at `first` that say the rest. A hull's half-spaces are n . x <= 1.
@@ -31,13 +31,17 @@ function formTexels(scene) {
 
 function materialTexels(scene) {
   return scene.materials.flatMap((m) => [
-    [...m.albedo, 0], [...m.pattern_albedo, kPatterns[m.pattern]], [...m.emission, m.pattern_size]]);
+    [...m.albedo, 0], [...m.pattern_albedo, kPatterns[m.pattern]], [...m.emission, m.pattern_size],
+    [m.line_width, m.w_of === "body" ? 1 : 0, 0, 0]]);
 }
 
-/// What each body of the page's albedo is multiplied by.
+/// What each body of the page's albedo is multiplied by, and how far its hue is turned.
 function tintTexels(scene, poses) {
   const bytes = bytesOfBase64(scene.tints);
-  return Array.from(poses.id, (id) => [...bytes.subarray(3 * id, 3 * id + 3)].map((b) => b / 255).concat(1));
+  return Array.from(poses.id, (id) => {
+    const [red, green, blue, turn] = bytes.subarray(4 * id, 4 * id + 4);
+    return [red / 255, green / 255, blue / 255, turn / 256];
+  });
 }
 
 /// The most of |direction . x| over a type's shape, for a direction in its own frame at f[at], ...
@@ -56,15 +60,25 @@ function halfExtent(scene, type, f, at) {
   return Infinity;
 }
 
-/// Whether a slice at distance `offset` along the direction meets the shape.
-function isCut(scene, type, f, at, offset) {
-  if (type.kind === "plane") return true;
-  if (Math.abs(offset) > type.bound) return false;
-  if (type.kind !== "hull") return Math.abs(offset) <= halfExtent(scene, type, f, at);
+/// How far a bounded type's shape reaches from its centre along a direction in its own frame at
+/// f[at], ...: the least and the most.
+function extentAlong(scene, type, f, at) {
+  if (type.kind !== "hull") {
+    const half = halfExtent(scene, type, f, at);
+    return [-half, half];
+  }
   let low = Infinity, high = -Infinity;
   for (const v of scene.hulls[type.hull].vertices) {
     const along = v[0] * f[at] + v[1] * f[at + 1] + v[2] * f[at + 2] + v[3] * f[at + 3];
     low = Math.min(low, along), high = Math.max(high, along);
   }
+  return [low, high];
+}
+
+/// Whether a slice at distance `offset` along the direction meets the shape.
+function isCut(scene, type, f, at, offset) {
+  if (type.kind === "plane") return true;
+  if (Math.abs(offset) > type.bound) return false;
+  const [low, high] = extentAlong(scene, type, f, at);
   return low <= offset && offset <= high;
 }

@@ -37,7 +37,10 @@ class Renderer {
     const text = (id) => document.getElementById(id).textContent.trimStart();
     const {scene} = this, kinds = new Set(scene.types.map((type) => type.kind));
     const all = [...[...kinds].map((kind) => `SHAPE_${kind.toUpperCase()}`), ...shown];
-    if (scene.materials.some((material) => material.pattern !== "none")) all.push("PATTERNS");
+    const patterns = new Set(scene.materials.map((material) => material.pattern));
+    patterns.delete("none");
+    if (patterns.size > 0) all.push("PATTERNS");
+    patterns.forEach((pattern) => all.push(`PATTERN_${pattern.toUpperCase()}`));
     if (scene.tints) all.push("TINTS");
     all.push(`SUNS ${this.grids.suns.length}`, `LAMPS ${Math.min(scene.lights.lamps.length, kMostLamps)}`);
     const key = [pass, ...shown].join(" ");
@@ -184,6 +187,10 @@ class Renderer {
     });
     gl.uniform3fv(this.place("sky"), lights.sky);
     gl.uniform1f(this.place("gain"), Math.min(2 ** exposure, 1e30));
+    gl.uniform4fv(this.place("axes_w"), axes.map((a) => a[3]));
+    gl.uniform1f(this.place("camera_w"), camera.position[3]);
+    gl.uniform3fv(this.place("side_colors[0]"), this.scene.side_colors.flat());
+    gl.uniform3fv(this.place("ghost_colors[0]"), this.scene.ghost_colors.flat());
     gl.uniform1ui(this.place("chosen"), chosen + 1);
   }
 

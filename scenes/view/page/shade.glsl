@@ -66,14 +66,148 @@ bool in_shadow(int sun, vec3 point, uint own) {
 }
 #endif
 
-vec3 albedo_at(int material, vec4 local) {
-    vec3 albedo = texelFetch(materials, place(3 * material), 0).rgb;
+#if defined(PATTERN_CELLS) || defined(PATTERN_W) || defined(TINTS)
+// The hue turned by a part of the colour circle, see tint.cpp.
+vec3 turned_hue(vec3 rgb, float turn) {
+    float most = max(rgb.r, max(rgb.g, rgb.b)), least = min(rgb.r, min(rgb.g, rgb.b));
+    float range = most - least;
+    if (range <= 0.0) return rgb;
+    float hue = most == rgb.r ? (rgb.g - rgb.b) / range
+              : most == rgb.g ? 2.0 + (rgb.b - rgb.r) / range : 4.0 + (rgb.r - rgb.g) / range;
+    vec3 at = hue + 6.0 * turn - vec3(0, 2, 4), away = abs(at - 6.0 * round(at / 6.0));
+    return least + range * clamp(2.0 - away, 0.0, 1.0);
+}
+#endif
+
+// Patterns follow pattern.cpp.
+#ifdef PATTERN_NOISE
+float random_at(uvec4 corner) {
+    uint bits = 0u;
+    for (int i = 0; i < 4; ++i) {
+        bits = (bits + corner[i]) * 0x9e3779b1u;
+        bits ^= bits >> 15;
+        bits *= 0x85ebca77u;
+        bits ^= bits >> 13;
+    }
+    return float(bits >> 8) / 16777216.0;
+}
+
+float smooth_random(vec4 at) {
+    vec4 cell = floor(at), t = at - cell, fade = t * t * t * (t * (6.0 * t - 15.0) + 10.0);
+    uvec4 corner = uvec4(ivec4(cell));
+    float sum = 0.0;
+    for (uint i = 0u; i < 16u; ++i) {
+        uvec4 up = uvec4(i, i >> 1, i >> 2, i >> 3) & 1u;
+        vec4 share = mix(1.0 - fade, fade, vec4(up));
+        sum += share.x * share.y * share.z * share.w * random_at(corner + up);
+    }
+    return sum;
+}
+
+float noise_at(vec4 at) {
+    float sum = smooth_random(at) + 0.5 * smooth_random(2.0 * at) + 0.25 * smooth_random(4.0 * at);
+    return smoothstep(0.25, 0.75, sum / 1.75);
+}
+#endif
+
+#ifdef PATTERN_GRID
+bool is_on_grid(vec4 point, vec4 normal, float size, float width) {
+    vec4 off = abs(point - size * round(point / size));
+    return any(lessThan(off, 0.5 * width * sqrt(max(vec4(0), 1.0 - normal * normal))));
+}
+#endif
+
+#if defined(PATTERN_EDGES) || defined(PATTERN_CELLS)
+// The number of a box's or polytope's cell whose normal it is, or -1.
+int cell_number(Form form, vec4 normal) {
+    int cell = -1;
+    float most = -kFar;
+#ifdef SHAPE_BOX
+    if (form.kind == kBox)
+        for (int axis = 0; axis < 4; ++axis)
+            if (abs(normal[axis]) > most) most = abs(normal[axis]), cell = 2 * axis + int(normal[axis] > 0.0);
+#endif
+#ifdef SHAPE_HULL
+    if (form.kind == kHull)
+        for (int i = 0; i < form.count; ++i) {
+            float along = dot(normalize(form_texel(form.first + i)), normal);
+            if (along > most) most = along, cell = i;
+        }
+#endif
+    return cell;
+}
+#endif
+
+#ifdef PATTERN_EDGES
+float distance_to_edge(Form form, vec4 point, vec4 normal) {
+    int own = cell_number(form, normal);
+    float nearest = kFar;
+#ifdef SHAPE_BOX
+    if (form.kind == kBox) {
+        vec4 away = form_texel(form.first) - abs(point);
+        for (int axis = 0; axis < 4; ++axis)
+            if (axis != own / 2) nearest = min(nearest, away[axis]);
+    }
+#endif
+#ifdef SHAPE_HULL
+    if (form.kind == kHull) {
+        vec4 n = normalize(form_texel(form.first + own));
+        for (int i = 0; i < form.count; ++i) {
+            vec4 plane = form_texel(form.first + i);
+            // The plane's slope along the own cell; of that itself, and of one parallel to it, 0.
+            float slope = length(plane - dot(n, plane) * n);
+            if (slope > 1e-3 * length(plane)) nearest = min(nearest, (1.0 - dot(plane, point)) / slope);
+        }
+    }
+#endif
+    return nearest;
+}
+#endif
+
+#ifdef PATTERN_W
+uniform vec4 axes_w;  // the world's w of right, up, forward, fourth
+uniform float camera_w;
+uniform vec3 side_colors[2];  // at negative and positive w
+#endif
+
+// The albedo of a material; `point` is in the slice, `local` in the body's frame.
+vec3 albedo_at(Body body, Form form, vec4 local, vec4 normal, vec3 point) {
+    int at = 4 * form.material;
+    vec3 albedo = texelFetch(materials, place(at), 0).rgb;
 #ifdef PATTERNS
-    vec4 other = texelFetch(materials, place(3 * material + 1), 0);
-    float size = texelFetch(materials, place(3 * material + 2), 0).w;
-    vec4 cell = floor(local / size + 0.5);
-    float number = other.w == 1.0 ? cell.x + cell.y + cell.z + cell.w : cell.x;
-    if (other.w != 0.0 && mod(number, 2.0) != 0.0) albedo = other.rgb;
+    vec4 other = texelFetch(materials, place(at + 1), 0), more = texelFetch(materials, place(at + 3), 0);
+    float size = texelFetch(materials, place(at + 2), 0).w;
+    vec4 below = local - kPatternDepth * size * normal, cell = floor(below / size + 0.5);
+#ifdef PATTERN_CHECKER
+    if (other.w == 1.0 && mod(cell.x + cell.y + cell.z + cell.w, 2.0) != 0.0) albedo = other.rgb;
+#endif
+#ifdef PATTERN_STRIPES
+    if (other.w == 2.0 && mod(cell.x, 2.0) != 0.0) albedo = other.rgb;
+#endif
+#ifdef PATTERN_NOISE
+    if (other.w == 3.0) albedo = mix(albedo, other.rgb, noise_at(below / size));
+#endif
+#ifdef PATTERN_GRID
+    if (other.w == 4.0 && is_on_grid(local, normal, size, more.x)) albedo = other.rgb;
+#endif
+#ifdef PATTERN_EDGES
+    if (other.w == 5.0 && distance_to_edge(form, local, normal) < 0.5 * more.x) albedo = other.rgb;
+#endif
+#ifdef PATTERN_CELLS
+    if (other.w == 6.0) {
+        int number = cell_number(form, normal);
+        if (number >= 0) albedo *= turned_hue(vec3(1.0, 0.25, 0.2), fract(0.6180339887498949 * float(number)));
+    }
+#endif
+#ifdef PATTERN_W
+    if (other.w == 7.0) {
+        vec4 centre = -vec4(dot(body.right, body.origin), dot(body.up, body.origin),
+                            dot(body.forward, body.origin), dot(body.fourth, body.origin));
+        float w = camera_w + dot(axes_w, more.y == 1.0 ? centre : vec4(point, body.shift));
+        float part = clamp(w / size, -1.0, 1.0);
+        albedo *= mix(vec3(1), side_colors[part > 0.0 ? 1 : 0], abs(part));
+    }
+#endif
 #endif
     return albedo;
 }
@@ -98,12 +232,7 @@ float lamp_distance(int lamp, vec3 direction) {
 }
 #endif
 
-struct Lit {
-    vec3 light;
-    float facing;  // cosine between the ray and the surface's normal in the slice
-};
-
-Lit light_of(uint number, float t, vec3 direction, bool casts) {
+vec3 light_of(uint number, float t, vec3 direction) {
     Body body = body_at(number);
     Form form = form_at(body.form);
     vec3 point = t * direction;
@@ -112,17 +241,18 @@ Lit light_of(uint number, float t, vec3 direction, bool casts) {
     vec4 normal = vec4(dot(out_of, body.right), dot(out_of, body.up), dot(out_of, body.forward),
                        dot(out_of, body.fourth));
 
-    vec4 glow = texelFetch(materials, place(3 * form.material + 2), 0);
-    vec3 albedo = albedo_at(form.material, local - kPatternDepth * glow.w * out_of);
+    vec4 glow = texelFetch(materials, place(4 * form.material + 2), 0);
+    vec3 albedo = albedo_at(body, form, local, out_of, point);
 #ifdef TINTS
-    albedo *= texelFetch(tints, place(int(number)), 0).rgb;
+    vec4 tint = texelFetch(tints, place(int(number)), 0);
+    albedo = tint.rgb * turned_hue(albedo, tint.a);
 #endif
     vec3 irradiance = vec3(0);
 #if SUNS > 0
     for (int i = 0; i < SUNS; ++i) {
         float cosine = dot(normal, sun_toward[i]);
 #ifdef SHADOWS
-        if (casts && cosine > 0.0 && in_shadow(i, point, number + 1u)) cosine = 0.0;
+        if (cosine > 0.0 && in_shadow(i, point, number + 1u)) cosine = 0.0;
 #endif
         irradiance += max(0.0, cosine) * sun_irradiance[i];
     }
@@ -130,11 +260,21 @@ Lit light_of(uint number, float t, vec3 direction, bool casts) {
 #if LAMPS > 0
     for (int i = 0; i < LAMPS; ++i) irradiance += from_lamp(i, vec4(point, body.shift), normal);
 #endif
-    vec3 seen_normal = normal.xyz / max(1e-6, length(normal.xyz));
-    return Lit(glow.rgb + albedo * (sky + kLambert * irradiance), abs(dot(seen_normal, direction)));
+    return glow.rgb + albedo * (sky + kLambert * irradiance);
 }
 
 #ifdef GHOSTS
+uniform vec3 ghost_colors[2];  // on the negative and the positive side
+
+// A ghost's light does not depend on the scene's, see ghosts.cpp.
+vec3 ghost_light(Body body, float t, vec3 direction) {
+    vec4 local = body.origin + body.shift * body.fourth + to_body(body, t * direction);
+    vec4 normal = normal_at(form_at(body.form), local);
+    vec3 seen = vec3(dot(normal, body.right), dot(normal, body.up), dot(normal, body.forward));
+    float facing = min(1.0, abs(dot(seen, direction)) / max(1e-6, length(seen)));
+    return mix(0.4, 1.0, facing) * ghost_colors[body.shift > 0.0 ? 1 : 0];
+}
+
 // The four nearest ghosts before what is solid, one over the other.
 vec3 with_ghosts(vec3 behind, uvec4 tile, vec3 direction, float solid) {
     vec4 t = vec4(kFar);
@@ -144,7 +284,7 @@ vec3 with_ghosts(vec3 behind, uvec4 tile, vec3 direction, float solid) {
         if (uintBitsToFloat(entry.y) > min(solid, t.w)) break;
         Body body = body_at(entry.x);
         float own = hit_distance(body, form_at(body.form), direction);
-        if (own >= solid) continue;
+        if (own >= solid || own == 0.0) continue;
         // Sorted into the four.
         if (own < t.x) t = vec4(own, t.xyz), who = uvec4(entry.x, who.xyz);
         else if (own < t.y) t = vec4(t.x, own, t.yz), who = uvec4(who.x, entry.x, who.yz);
@@ -153,10 +293,8 @@ vec3 with_ghosts(vec3 behind, uvec4 tile, vec3 direction, float solid) {
     }
     for (int i = 3; i >= 0; --i) {
         if (t[i] == kFar) continue;
-        Lit lit = light_of(who[i], t[i], direction, false);
-        // Thin in the middle and thicker at the rim, as a bubble is.
-        float opacity = body_at(who[i]).opacity * mix(0.7, 0.2, lit.facing);
-        behind = mix(behind, lit.light, opacity);
+        Body body = body_at(who[i]);
+        behind = mix(behind, ghost_light(body, t[i], direction), body.opacity);
     }
     return behind;
 }
@@ -184,7 +322,7 @@ void main() {
     uvec2 seen = texelFetch(seen_by, at, 0).xy;
     float t = uintBitsToFloat(seen.y);
     vec3 light = sky;
-    if (seen.x != 0u) light = light_of(seen.x - 1u, t, direction, true).light;
+    if (seen.x != 0u) light = light_of(seen.x - 1u, t, direction);
     if (seen.x == 0u) t = kFar;
 #if LAMPS > 0
     for (int i = 0; i < LAMPS; ++i) {
@@ -192,11 +330,12 @@ void main() {
         if (own < t) t = own, light = lamp_power[i].rgb;
     }
 #endif
+    light = min(gain * light, 1.0);
 #ifdef GHOSTS
     uvec4 tile = texelFetch(tiles, at / tile_size, 0);
     light = with_ghosts(light, tile, direction, t);
 #endif
-    color = vec4(srgb(gain * light), 1);
+    color = vec4(srgb(light), 1);
 #ifdef OUTLINE
     if (on_outline(at, seen.x)) color.rgb = kChosen;
 #endif

@@ -11,7 +11,7 @@ precision highp sampler2D;
 
 uniform sampler2D bodies;     // six texels a body, see bodies.js
 uniform sampler2D forms;      // two texels a type, then what they point to, see forms.js
-uniform sampler2D materials;  // three texels a material
+uniform sampler2D materials;  // four texels a material
 uniform usampler2D tiles;     // by tile: first solid, solids, first ghost, ghosts in `list`
 uniform usampler2D list;      // bodies: number, and how near they may be as bits of a float
 uniform int tile_size;        // [pixels]

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-const SliceSheet::Cell kWhole = {0, 0, 0};
+const SliceSheet::Cell kWhole = {0, 0, 0, 0};
 
 std::array<double, 3> random_numbers(Random& random) {
     std::array<double, 3> u;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/material/pattern.hpp"
 #include "render/tint.hpp"
 #include "tests/render/test_scene.hpp"
 
@@ -225,15 +226,15 @@ TEST(Albedo, CheckerCellsAreCentredAndAlternate) {
     Material m;
     m.pattern = Pattern::kChecker;
     m.pattern_size = 0.5;
-    EXPECT_TRUE((albedo_at(m, Vec4::Constant(0.24)) == m.albedo).all());
-    EXPECT_TRUE((albedo_at(m, Vec4::Constant(-0.24)) == m.albedo).all());
+    EXPECT_TRUE((colour_in_space(m, Vec4::Constant(0.24)) == m.albedo).all());
+    EXPECT_TRUE((colour_in_space(m, Vec4::Constant(-0.24)) == m.albedo).all());
     for (int axis = 0; axis < 4; ++axis)
         for (int n = -3; n <= 3; ++n) {
-            const Color c = albedo_at(m, 0.5 * n * Vec4::Unit(axis));
+            const Color c = colour_in_space(m, 0.5 * n * Vec4::Unit(axis));
             EXPECT_TRUE((c == (n % 2 == 0 ? m.albedo : m.pattern_albedo)).all());
         }
-    EXPECT_TRUE((albedo_at(m, Vec4(0.5, 0.5, 0, 0)) == m.albedo).all());
-    EXPECT_TRUE((albedo_at(m, Vec4(0.5, 0.5, 0, -0.5)) == m.pattern_albedo).all());
+    EXPECT_TRUE((colour_in_space(m, Vec4(0.5, 0.5, 0, 0)) == m.albedo).all());
+    EXPECT_TRUE((colour_in_space(m, Vec4(0.5, 0.5, 0, -0.5)) == m.pattern_albedo).all());
 }
 
 TEST(Albedo, StripesDependOnXAlone) {
@@ -244,7 +245,7 @@ TEST(Albedo, StripesDependOnXAlone) {
     for (int i = 0; i < 1000; ++i) {
         const Vec4 p = random_vector(random, 10);
         const bool odd = std::lround(p.x() / 0.5) % 2 != 0;
-        EXPECT_TRUE((albedo_at(m, p) == (odd ? m.pattern_albedo : m.albedo)).all());
+        EXPECT_TRUE((colour_in_space(m, p) == (odd ? m.pattern_albedo : m.albedo)).all());
     }
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "scenes/load/body_keys.hpp"
+#include "scenes/load/overlay_keys.hpp"
 #include "scenes/load/picture_keys.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 
@@ -30,6 +31,10 @@ position = [0, 5, 0, 0]
 type = "sphere"
 position = [0, 5, 0, 0]
 radius = 1
+[overlay]
+title = "t"
+[[overlay.caption]]
+text = "c"
 [[body]]
 name = "b"
 shape = "hypersphere"
@@ -61,6 +66,8 @@ std::string other(const Bivector&, TurningPlanes) { return "{ xy = 30, zw = 0.5 
 std::string other(const std::vector<Bivector>&, Turns) {
     return "[{ xy = 30, zw = 0.5 }, { yz = 20 }]";
 }
+std::string other(const render::Color&, ColorOrUnwritten) { return "[0.25, 0.5, 1]"; }
+std::string other(const std::string&, OneLine) { return "\"other\""; }
 std::string other(const render::Color&, AlbedoOf) { return "[0.25, 0.5, 1]"; }
 std::string other(bool value, FalseOrUnwritten) { return toml_text(!value); }
 std::string other(std::integral auto value, IntegerOrUnwritten) { return toml_text(value + 1); }
@@ -124,6 +131,19 @@ std::function<std::string(const std::string&, const std::string&)> set_in(const 
     };
 }
 
+/// In a list of one table that has the others too.
+std::function<std::string(const std::string&, const std::string&)> set_in_list(
+    const std::string& path, const std::map<std::string, std::string>& others) {
+    return [=](const std::string& key, const std::string& value) {
+        std::map<std::string, std::string> all = others;
+        all[key] = value;
+        std::string text;
+        for (const auto& [part, v] : all)
+            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", part, v);
+        return path + "=[{ " + text + " }]";
+    };
+}
+
 /// Every key of a list changes its line of the canonical text, and every key that the loader looks
 /// for is in the list.
 /// @param list   called with a visitor of the list's keys
@@ -162,19 +182,19 @@ TEST(Keys, OfTheFilmAreReadAndWritten) {
                        [&](const auto& visit) { camera_keys(scene.camera, visit); });
     expect_all_written({"[render]", 0, set_in("render")}, [&](const auto& visit) {
         frame_keys(scene.render, visit), pixel_keys(scene.render, visit);
-        ray_keys(scene.render, visit), file_keys(scene.render, visit);
+        ray_keys(scene.render, visit), ghost_keys(scene.render, visit);
+        file_keys(scene.render, visit);
     });
     const CameraKey key;
-    const auto set_in_key = [](const std::string& name, const std::string& value) {
-        std::map<std::string, std::string> all = {{"time", "0"}, {"position", "[1, 1, -8, 0]"}};
-        all[name] = value;
-        std::string text;
-        for (const auto& [part, v] : all)
-            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", part, v);
-        return "camera.key=[{ " + text + " }]";
-    };
-    expect_all_written({"[[camera.key]]", 0, set_in_key},
+    expect_all_written({"[[camera.key]]", 0,
+                        set_in_list("camera.key", {{"time", "0"}, {"position", "[1, 1, -8, 0]"}})},
                        [&](const auto& visit) { camera_key_keys(key, visit, {}); });
+    expect_all_written({"[overlay]", 0, set_in("overlay"), {}, {"caption"}},
+                       [&](const auto& visit) { overlay_keys(scene.overlay, visit); });
+    const Caption caption;
+    expect_all_written(
+        {"[[overlay.caption]]", 0, set_in_list("overlay.caption", {{"text", "\"d\""}})},
+        [&](const auto& visit) { caption_keys(caption, visit); });
 }
 
 TEST(Keys, OfMaterialsAndLightsAreReadAndWritten) {

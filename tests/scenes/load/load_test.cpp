@@ -110,7 +110,7 @@ TEST(LoadScene, ReadsChannelsForCompositing) {
     EXPECT_TRUE(c.motion && c.zplanar && c.normal3 && c.light && c.cryptomatte);
     EXPECT_EQ(scene.render.sky, render::Sky::kTransparent);
     EXPECT_FALSE(c.color || c.depth || c.normal || c.albedo || c.id);
-    EXPECT_FALSE(load_text("[scene]").render.channels.any_layer());
+    EXPECT_FALSE(load_text("[scene]").render.has_layers());
 }
 
 TEST(LoadScene, ReadsEverything) {
