@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-constexpr int kTowers = 40, kSteps = 120;
+constexpr int kTowers = 15, kSteps = 80;
 
 struct Place {
     int tower, level;

@@ -10,6 +10,10 @@ template <class S>
 struct ShapeBounds : ::testing::Test {};
 TYPED_TEST_SUITE(ShapeBounds, BoundedShapes);
 
+template <class S>
+struct ShapeBoundsSlow : ::testing::Test {};
+TYPED_TEST_SUITE(ShapeBoundsSlow, BoundedShapes);
+
 /// A few roundings of a sum of five terms.
 constexpr double kBoundsRounding = 4e-15;
 
@@ -29,9 +33,10 @@ Vec4 surface_point(const Oracle& oracle, RandomGeometry& random) {
     return (inside * d).cast<double>();
 }
 
-TYPED_TEST(ShapeBounds, SupportIsMaximalAndBelongsToTheShape) {
+template <class S>
+void expect_maximal_support(std::size_t shapes) {
     RandomGeometry random(421);
-    for (const TypeParam& shape : sample_shapes<TypeParam>(random, 60)) {
+    for (const S& shape : sample_shapes<S>(random, shapes)) {
         const Oracle oracle(shape);
         for (int i = 0; i < 40; ++i) {
             Vec4 d = random.direction();
@@ -52,9 +57,17 @@ TYPED_TEST(ShapeBounds, SupportIsMaximalAndBelongsToTheShape) {
     }
 }
 
-TYPED_TEST(ShapeBounds, HoldTheTurnedShapeAndAreAttained) {
+TYPED_TEST(ShapeBounds, SupportIsMaximalAndBelongsToTheShape) {
+    expect_maximal_support<TypeParam>(20);
+}
+TYPED_TEST(ShapeBoundsSlow, SupportIsMaximalAndBelongsToTheShape) {
+    expect_maximal_support<TypeParam>(60);
+}
+
+template <class S>
+void expect_bounds_of_turned_shape(std::size_t shapes) {
     RandomGeometry random(422);
-    for (const TypeParam& shape : sample_shapes<TypeParam>(random, 60)) {
+    for (const S& shape : sample_shapes<S>(random, shapes)) {
         const Oracle oracle(shape);
         for (int i = 0; i < 20; ++i) {
             const Mat4 rotation = i ? random_rotation(random) : Mat4(Mat4::Identity());
@@ -73,6 +86,13 @@ TYPED_TEST(ShapeBounds, HoldTheTurnedShapeAndAreAttained) {
             }
         }
     }
+}
+
+TYPED_TEST(ShapeBounds, HoldTheTurnedShapeAndAreAttained) {
+    expect_bounds_of_turned_shape<TypeParam>(20);
+}
+TYPED_TEST(ShapeBoundsSlow, HoldTheTurnedShapeAndAreAttained) {
+    expect_bounds_of_turned_shape<TypeParam>(60);
 }
 
 TYPED_TEST(ShapeBounds, BoundingRadiusIsTheFarthestPoint) {

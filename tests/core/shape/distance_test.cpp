@@ -111,7 +111,7 @@ TYPED_TEST(ShapeDistance, MatchesCentralDifferencesWhereSmooth) {
     // or box has places where the curvature jumps: there they are off by h / (2 size) at most.
     const double tolerance = std::is_same_v<TypeParam, Hypersphere> ? 5e-10 : 5.1e-6;
     RandomGeometry random(416);
-    for (int trial = 0; trial < 3000; ++trial) {
+    for (int trial = 0; trial < kShare<TypeParam> * 3000; ++trial) {
         const TypeParam shape = random_shape<TypeParam>(random);
         const double size = bounding_radius(shape), h = 1e-5 * size;
         const Vec4 p = random.uniform(2, 3) * size * random.direction();

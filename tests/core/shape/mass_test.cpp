@@ -69,7 +69,7 @@ TYPED_TEST(ShapeMass, MatchesMonteCarloOverTheSignedDistance) {
 TYPED_TEST(ShapeMass, ScalesAsItsUnitsDo) {
     // Powers of two scale without rounding: volume with the fourth, J with the second power.
     RandomGeometry random(402);
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < kShare<TypeParam> * 1000; ++trial) {
         const TypeParam shape = random_shape<TypeParam>(random);
         TypeParam larger = shape;
         TypeParam::parameters(larger,
