@@ -91,11 +91,12 @@ using ShapePairs =
 TYPED_TEST_SUITE(ConvexShapes, ShapePairs);
 
 template <class A, class B>
-void expect_true(std::pair<Placed<A>, Placed<B>> (*draw)(RandomGeometry&), By by, const char* set) {
+void expect_true(std::pair<Placed<A>, Placed<B>> (*draw)(RandomGeometry&), By by, const char* set,
+                 int count) {
     RandomGeometry random(21);
     ConvexErrors errors;
     // The truth about two boxes takes most of the time.
-    const int count = std::is_same_v<A, Hyperbox> && std::is_same_v<B, Hyperbox> ? 200 : 2000;
+    if (std::is_same_v<A, Hyperbox> && std::is_same_v<B, Hyperbox>) count /= 10;
     for (int i = 0; i < count; ++i) {
         const auto [a, b] = draw(random);
         SCOPED_TRACE(i);
@@ -115,18 +116,31 @@ void expect_true(std::pair<Placed<A>, Placed<B>> (*draw)(RandomGeometry&), By by
 TYPED_TEST(ConvexShapes, MatchZonotopes) {
     using A = typename TypeParam::first_type;
     using B = typename TypeParam::second_type;
-    expect_true<A, B>(random_pair, By::kCores, "random");
+    expect_true<A, B>(random_pair, By::kCores, "random", 800);
 }
 TYPED_TEST(ConvexShapes, MatchZonotopesWhereDegenerate) {
     using A = typename TypeParam::first_type;
     using B = typename TypeParam::second_type;
-    expect_true<A, B>(degenerate_pair, By::kCores, "degenerate");
+    expect_true<A, B>(degenerate_pair, By::kCores, "degenerate", 800);
 }
 TYPED_TEST(ConvexShapes, MatchZonotopesByRoundSupports) {
     using A = typename TypeParam::first_type;
     using B = typename TypeParam::second_type;
-    expect_true<A, B>(random_pair, By::kSupport, "random, round");
-    expect_true<A, B>(degenerate_pair, By::kSupport, "degenerate, round");
+    expect_true<A, B>(random_pair, By::kSupport, "random, round", 500);
+    expect_true<A, B>(degenerate_pair, By::kSupport, "degenerate, round", 500);
+}
+
+template <class Pair>
+class ConvexShapesSlow : public ::testing::Test {};
+TYPED_TEST_SUITE(ConvexShapesSlow, ShapePairs);
+
+TYPED_TEST(ConvexShapesSlow, MatchZonotopes) {
+    using A = typename TypeParam::first_type;
+    using B = typename TypeParam::second_type;
+    for (const By by : {By::kCores, By::kSupport}) {
+        expect_true<A, B>(random_pair, by, "random", 2000);
+        expect_true<A, B>(degenerate_pair, by, "degenerate", 2000);
+    }
 }
 
 /// Points in a ball or on its surface.
@@ -148,11 +162,11 @@ void expect_consistent(const Set& a, const Set& b, const ConvexSeparation& s, do
     ConvexErrors::note(errors.gap, std::abs(s.distance + overlap_along(a, b, n)) / size);
 }
 
-TEST(ConvexPointSets, MatchExchangeOfWeightsWhereApart) {
+void expect_exchange_of_weights(int pairs) {
     RandomGeometry random(22);
     ConvexErrors errors;
     int known = 0;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < pairs; ++i) {
         // The exchange takes long for many points.
         const double most = i % 20 == 0 ? 61 : 13;
         const PointSet a = random_points(random, static_cast<int>(random.uniform(1, most)));
@@ -173,17 +187,20 @@ TEST(ConvexPointSets, MatchExchangeOfWeightsWhereApart) {
         ConvexErrors::note(errors.outside, ApartBounds(b, PointSet{{s.on_b}}, 1e-15L).low / 2);
     }
     errors.print("point sets");
-    EXPECT_GT(known, 200);
+    EXPECT_GT(known, pairs / 5);
     EXPECT_LT(errors.distance, kConvexAccuracy);
     EXPECT_LT(errors.gap, kConvexAccuracy);
     EXPECT_LT(errors.points, kConvexAccuracy);
     EXPECT_LT(errors.outside, kConvexAccuracy);
 }
 
-TEST(ConvexPointSets, MatchAllFacetsInOverlap) {
+TEST(ConvexPointSets, MatchExchangeOfWeightsWhereApart) { expect_exchange_of_weights(300); }
+TEST(ConvexPointSetsSlow, MatchExchangeOfWeightsWhereApart) { expect_exchange_of_weights(1000); }
+
+void expect_facets_of_point_sets(int pairs) {
     RandomGeometry random(23);
     ConvexErrors errors;
-    for (int i = 0; i < 400; ++i) {
+    for (int i = 0; i < pairs; ++i) {
         const PointSet a = random_points(random, static_cast<int>(random.uniform(5, 9)));
         const Vec4 way = random.uniform(0, 0.8) * random.direction();
         const PointSet b = random_points(random, static_cast<int>(random.uniform(5, 9))).moved(way);
@@ -193,11 +210,14 @@ TEST(ConvexPointSets, MatchAllFacetsInOverlap) {
         ConvexErrors::note(errors.overlap, std::abs(s.distance + least_overlap_of(a, b)) / 2);
     }
     errors.print("small point sets");
-    EXPECT_GT(errors.deep, 150);
+    EXPECT_GT(errors.deep, pairs * 3 / 8);
     EXPECT_LT(errors.overlap, kConvexAccuracy);
     EXPECT_LT(errors.gap, kConvexAccuracy);
     EXPECT_LT(errors.points, kConvexAccuracy);
 }
+
+TEST(ConvexPointSets, MatchAllFacetsInOverlap) { expect_facets_of_point_sets(120); }
+TEST(ConvexPointSetsSlow, MatchAllFacetsInOverlap) { expect_facets_of_point_sets(400); }
 
 TEST(ConvexCells, MatchAllFacetsInOverlap) {
     RandomGeometry random(24);

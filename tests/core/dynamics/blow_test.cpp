@@ -45,9 +45,9 @@ TEST(Blow, OfAHeavyBoxOnALightOneDoesNotThrowItBack) {
 /// What pressed it against the boards when it hit them was recalled as their load, one by one: it
 /// came back with 7 % of its energy. What lies under the heavy body is pressed in by a little,
 /// which lifts it again.
-TEST(Blow, OfABodyThatFallsAslantOnBoardsAddsNoEnergy) {
+void expect_no_gain_on_boards(int falls) {
     std::mt19937_64 random(5);
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < falls; ++i) {
         const double mass = std::pow(10, uniform(random, 1, 2)), size = uniform(random, 0.1, 0.6);
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 1));
@@ -73,6 +73,9 @@ TEST(Blow, OfABodyThatFallsAslantOnBoardsAddsNoEnergy) {
         EXPECT_LT(gain, 0.01 * hardest) << i << ": " << mass << " kg";
     }
 }
+
+TEST(Blow, OfABodyThatFallsAslantOnBoardsAddsNoEnergy) { expect_no_gain_on_boards(10); }
+TEST(BlowSlow, OfABodyThatFallsAslantOnBoardsAddsNoEnergy) { expect_no_gain_on_boards(30); }
 
 /// A ball hits a row of balls that touch each other and a wall.
 double speed_after_row(const PhysicsSettings& settings, double mass, int row, double restitution,
@@ -105,9 +108,9 @@ TEST(Blow, OnARowAtAWallIsTakenUp) {
 
 /// What a body before a wall presses together is taken apart, and does not throw it back: rows with
 /// and without gaps, of balls and of boxes, in double and in float.
-TEST(Blow, OnARowWithGapsIsTakenUpToo) {
+void expect_rows_with_gaps_take_it_up(int trials) {
     std::mt19937_64 random(4);
-    for (int trial = 0; trial < 120; ++trial) {
+    for (int trial = 0; trial < trials; ++trial) {
         const bool boxes = trial % 2 == 1;
         const double e = trial % 4 < 2 ? 0 : uniform(random, 0.1, 0.5);
         const double gap = trial % 3 == 0 ? 0 : uniform(random, 0, 0.006);
@@ -139,6 +142,9 @@ TEST(Blow, OnARowWithGapsIsTakenUpToo) {
             << ", gap " << gap << ", row " << row;
     }
 }
+
+TEST(Blow, OnARowWithGapsIsTakenUpToo) { expect_rows_with_gaps_take_it_up(36); }
+TEST(BlowSlow, OnARowWithGapsIsTakenUpToo) { expect_rows_with_gaps_take_it_up(120); }
 
 /// What a heavy ball does to boxes that lie flush on each other and on a plane.
 struct Struck {
@@ -346,12 +352,12 @@ Bodies before_blow(std::mt19937_64& random, bool wall, int row, double friction,
     return bodies;
 }
 
-TEST(Blow, NeverAddsEnergy) {
+void expect_blows_add_nothing(int rounds) {
     std::mt19937_64 random(7);
     constexpr std::array kFriction{0.0, 0.3, 1.0, 2.0};
     constexpr std::array kRestitution{0.0, 0.3, 0.7, 0.9, 1.0};
     int blows = 0;
-    for (int round = 0; round < 1000; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         PhysicsSettings settings = both_solvers()[round % 2];
         settings.gravity.setZero();
         const Bodies bodies = before_blow(random, round / 2 % 2, round / 4 % 2 ? 5 : 1,
@@ -373,8 +379,11 @@ TEST(Blow, NeverAddsEnergy) {
             before = energy;
         }
     }
-    EXPECT_GT(blows, 1000);
+    EXPECT_GT(blows, rounds);
 }
+
+TEST(Blow, NeverAddsEnergy) { expect_blows_add_nothing(320); }
+TEST(BlowSlow, NeverAddsEnergy) { expect_blows_add_nothing(1000); }
 
 /// Boxes, capsules and spheres thrown down turning. Newton's ratio with Coulomb's friction would
 /// add up to a third to the energy of some bounces.

@@ -231,18 +231,21 @@ void expect_as_on_one_plane(const Ride& ride, Floor floor) {
     }
 }
 
-TEST(Seams, AreCrossedByWhatHasAnAcuteFrontEdge) {
+void expect_wedges_cross(std::uint64_t rides) {
     for (const double friction : {0.0, 0.3})
-        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        for (std::uint64_t seed = 0; seed < rides; ++seed) {
             SCOPED_TRACE(seed);
             expect_as_on_one_plane(random_ride(Kind::kWedge, friction, seed),
                                    seed % 2 == 0 ? Floor::kGrid : Floor::kStaggered);
         }
 }
 
-TEST(Seams, OfPolychoronTilesAreCrossedAsOnePlane) {
+TEST(Seams, AreCrossedByWhatHasAnAcuteFrontEdge) { expect_wedges_cross(4); }
+TEST(SeamsSlow, AreCrossedByWhatHasAnAcuteFrontEdge) { expect_wedges_cross(12); }
+
+void expect_polychoron_tiles_crossed(std::uint64_t rides) {
     for (const auto& [kind, friction] : kRides)
-        for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        for (std::uint64_t seed = 0; seed < rides; ++seed) {
             SCOPED_TRACE(::testing::Message() << int(kind) << ' ' << friction << ' ' << seed);
             Ride ride = random_ride(kind, friction, 500 + 10 * static_cast<unsigned>(kind) + seed);
             ride.hull_tiles = true;
@@ -250,7 +253,11 @@ TEST(Seams, OfPolychoronTilesAreCrossedAsOnePlane) {
         }
 }
 
-TEST(Seams, OfAGridAreCrossedAsOnePlane) { expect_as_on_one_plane(Floor::kGrid, 4); }
+TEST(Seams, OfPolychoronTilesAreCrossedAsOnePlane) { expect_polychoron_tiles_crossed(1); }
+TEST(SeamsSlow, OfPolychoronTilesAreCrossedAsOnePlane) { expect_polychoron_tiles_crossed(3); }
+
+TEST(Seams, OfAGridAreCrossedAsOnePlane) { expect_as_on_one_plane(Floor::kGrid, 1); }
+TEST(SeamsSlow, OfAGridAreCrossedAsOnePlane) { expect_as_on_one_plane(Floor::kGrid, 4); }
 TEST(Seams, OfStaggeredTilesAreCrossedAsOnePlane) { expect_as_on_one_plane(Floor::kStaggered, 1); }
 TEST(Seams, OfTilesSunkInAPlaneAreCrossedAsOnePlane) {
     expect_as_on_one_plane(Floor::kSunkInPlane, 1);
@@ -350,9 +357,9 @@ TEST(SeamsSlow, OfAWallOnAFloorAreNone) {
 }
 
 /// What lies in the corner of a floor and walls, on edges and vertices too, stays there.
-TEST(Seams, NobodyInACornerIsLeftWithoutContacts) {
+void expect_contacts_in_corners(std::uint64_t seeds) {
     for (const PhysicsSettings& settings : impulse_and_soft())
-        for (std::uint64_t seed = 0; seed < 9; ++seed) {
+        for (std::uint64_t seed = 0; seed < seeds; ++seed) {
             Draw draw{std::mt19937_64(seed)};
             const double side = draw.any_size(0.3, 2);
             BodyType tile = box_type(Vec4::Constant(side));
@@ -388,6 +395,9 @@ TEST(Seams, NobodyInACornerIsLeftWithoutContacts) {
             EXPECT_GT(world.bodies().position[body].head<3>().minCoeff(), 0.2 * size) << seed;
         }
 }
+
+TEST(Seams, NobodyInACornerIsLeftWithoutContacts) { expect_contacts_in_corners(3); }
+TEST(SeamsSlow, NobodyInACornerIsLeftWithoutContacts) { expect_contacts_in_corners(9); }
 
 /// Two boxes on a plane that overlap along an edge from bottom to top, of which only a point at the
 /// bottom is told, pushing along the plane: what it tells of a side must not be taken for a seam.
