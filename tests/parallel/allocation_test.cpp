@@ -23,7 +23,9 @@ using namespace tesserae::testing;
 Bodies resting_bodies(double rolling_friction) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
-    add_columns(bodies, [](int) { return sphere_type(0.5, 1, 0.5); });
+    for (int i = 0; i < 5 * 5 * 5 * 5; ++i)
+        add(bodies, sphere_type(0.5, 1, 0.5),
+            {i % 5 - 2.0, i / 125 + 0.5, i / 5 % 5 - 2.0, i / 25 % 5 - 2.0});
     for (int i = 0; i < 20; ++i)
         add(bodies, box_type(Vec4::Ones(), 10), {10 + 2.0 * (i / 2), 0.5 + i % 2, 0, 0});
     for (int i = 0; i < 50; ++i)

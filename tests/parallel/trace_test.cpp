@@ -51,7 +51,7 @@ TEST(Trace, HasARowForEveryThread) {
 
 TEST(Trace, NothingIsRecordedWithoutOne) { const Trace::Span span(nullptr, "nothing"); }
 
-TEST(Trace, KeepsABoundedNumber) {
+TEST(TraceSlow, KeepsABoundedNumber) {
     Trace trace;
     for (int i = 0; i < 1'000'100; ++i) const Trace::Span span(&trace, "short");
     EXPECT_EQ(count(trace.json(), "short"), 1'000'000u);
