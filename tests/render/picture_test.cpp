@@ -49,7 +49,7 @@ struct OracleCamera {
     }
 };
 
-TEST(Picture, OfSpheresIsTheClosedForm) {
+void expect_spheres_in_closed_form(int width) {
     // A camera in general position. The oracle cuts every sphere with the camera's hyperplane and
     // meets the 3D sphere that results. Pixels whose ray passes within 1e-3 m of a rim are left
     // out; elsewhere float (6e-8) limits the depth, and 1e-3 m beside a rim the hit distance is at
@@ -59,7 +59,7 @@ TEST(Picture, OfSpheresIsTheClosedForm) {
     std::size_t compared = 0, background = 0;
     for (int round = 0; round < 4; ++round) {
         TestScene scene;
-        scene.settings.width = 240, scene.settings.height = 135;
+        scene.settings.width = width, scene.settings.height = width * 9 / 16;
         scene.settings.samples = 1 + round % 2;
         scene.settings.channels.position = true;
         if (round >= 2) scene.settings.intersector = Intersector::kAnalytic;
@@ -119,9 +119,12 @@ TEST(Picture, OfSpheresIsTheClosedForm) {
                 }
             }
     }
-    EXPECT_GT(compared, 20000u);
-    EXPECT_GT(background, 1000u);
+    EXPECT_GT(compared, 0.34 * width * width);
+    EXPECT_GT(background, 0.017 * width * width);
 }
+
+TEST(Picture, OfSpheresIsTheClosedForm) { expect_spheres_in_closed_form(112); }
+TEST(PictureSlow, OfSpheresIsTheClosedForm) { expect_spheres_in_closed_form(240); }
 
 /// Of a product of balls: how far outside the one that holds a point least.
 Real ball_level(const BallProduct& shape, const RealVec4& p) {
@@ -167,13 +170,13 @@ Real oracle_distance(const Shape& shape, const RealVec4& p) {
     return outside > 0 ? std::sqrt(outside) : inside;
 }
 
-TEST(Picture, OfAllShapesIsFoundByBisection) {
+void expect_shapes_by_bisection(int width) {
     // Along a ray a convex body's distance falls, then rises: its least value by golden section,
     // the entry by bisection before it. Rays within 1e-3 m of grazing any body are left out.
     Random random(52);
     std::size_t compared = 0;
     TestScene scene;
-    scene.settings.width = 84, scene.settings.height = 63;
+    scene.settings.width = width, scene.settings.height = width * 3 / 4;
     scene.settings.samples = 1;
     scene.settings.max_distance = 200;
     scene.camera = random_camera(random, 7);
@@ -230,8 +233,11 @@ TEST(Picture, OfAllShapesIsFoundByBisection) {
             EXPECT_NEAR(image.at("Z", x, y), static_cast<double>(depth),
                         1e-6 * static_cast<double>(depth));
         }
-    EXPECT_GT(compared, 2000u);
+    EXPECT_GT(compared, 0.28 * width * width);
 }
+
+TEST(Picture, OfAllShapesIsFoundByBisection) { expect_shapes_by_bisection(48); }
+TEST(PictureSlow, OfAllShapesIsFoundByBisection) { expect_shapes_by_bisection(84); }
 
 TEST(Picture, CoverageConvergesToTheArea) {
     // A sphere straight ahead shows as a circle of radius tan(alpha): its area in pixels is known.

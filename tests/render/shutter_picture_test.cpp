@@ -105,24 +105,23 @@ TestScene still_at(const TestScene& scene, double time, int frame) {
 
 /// Holds the picture of an open shutter against the mean of stills at random times, one in each of
 /// so many equal parts, pixel by pixel.
-void expect_mean_of_stills(TestScene scene, const char* what) {
+void expect_mean_of_stills(TestScene scene, const char* what, int stills = 64) {
     SCOPED_TRACE(what);
-    constexpr int kStills = 64;
-    scene.settings.samples = 2 * kStills;
+    scene.settings.samples = 2 * stills;
     const Image blurred = picture_of(scene);
     Random random(5);
     const int samples = scene.settings.samples;
     scene.settings.samples = 2;
     std::map<std::string, std::vector<double>> sums, squares;
-    for (int k = 0; k < kStills; ++k) {
+    for (int k = 0; k < stills; ++k) {
         const Image still =
-            picture_of(still_at(scene, (k + uniform(random, 0, 1)) / kStills, 1000 + k));
+            picture_of(still_at(scene, (k + uniform(random, 0, 1)) / stills, 1000 + k));
         for (const char* channel : {"R", "G", "B", "A"}) {
             const std::vector<float>& plane = still.planes.at(channel);
             sums[channel].resize(plane.size()), squares[channel].resize(plane.size());
             for (std::size_t i = 0; i < plane.size(); ++i) {
-                sums[channel][i] += plane[i] / kStills;
-                squares[channel][i] += static_cast<double>(plane[i]) * plane[i] / kStills;
+                sums[channel][i] += plane[i] / static_cast<float>(stills);
+                squares[channel][i] += static_cast<double>(plane[i]) * plane[i] / stills;
             }
         }
     }
@@ -132,7 +131,7 @@ void expect_mean_of_stills(TestScene scene, const char* what) {
     for (const char* channel : {"R", "G", "B", "A"})
         for (std::size_t i = 0; i < sums[channel].size(); ++i) {
             const double m = sums[channel][i];
-            const double own = std::max(0.0, squares[channel][i] - m * m) / (kStills - 1);
+            const double own = std::max(0.0, squares[channel][i] - m * m) / (stills - 1);
             const double value = blurred.planes.at(channel)[i];
             const double its = *channel == 'A'
                                    ? value * (1 - value) / samples
@@ -149,11 +148,16 @@ void expect_mean_of_stills(TestScene scene, const char* what) {
 }
 
 TEST(Shutter, IsTheMeanOfItsMomentsDirect) {
-    expect_mean_of_stills(busy_shutter(Integrator::kDirect), "direct");
+    expect_mean_of_stills(busy_shutter(Integrator::kDirect), "direct", 40);
 }
 
 TEST(Shutter, IsTheMeanOfItsMomentsPath) {
-    expect_mean_of_stills(busy_shutter(Integrator::kPath), "path");
+    expect_mean_of_stills(busy_shutter(Integrator::kPath), "path", 40);
+}
+
+TEST(ShutterSlow, IsTheMeanOfItsMoments) {
+    for (const Integrator integrator : {Integrator::kDirect, Integrator::kPath})
+        expect_mean_of_stills(busy_shutter(integrator), "more stills", 64);
 }
 
 TEST(Shutter, IsTheMeanOfItsMomentsInClosedForm) {
@@ -162,12 +166,12 @@ TEST(Shutter, IsTheMeanOfItsMomentsInClosedForm) {
     expect_mean_of_stills(scene, "analytic");
 }
 
-TEST(Shutter, IsTheMeanOfItsMomentsWithAMovingCamera) {
+void expect_mean_with_a_moving_camera(int stills) {
     TestScene scene = busy_shutter(Integrator::kDirect);
     scene.path[0].camera.position += Vec4(0.4, 0.1, 0.2, 0.3);
     scene.path[1].camera.position += Vec4(-0.3, 0.2, 0.1, -0.2);
     scene.path[1].camera.look_at += Vec4(0.2, 0, 0.1, 0.1);
-    expect_mean_of_stills(scene, "moves");
+    expect_mean_of_stills(scene, "moves", stills);
     // Nothing but the camera moves, and its slice turns.
     for (ShutterMoment& moment : scene.path) moment.bodies = scene.bodies;
     scene.path[1].camera.fourth = Vec4(0.6, 0, 0, 0.8);
@@ -177,8 +181,11 @@ TEST(Shutter, IsTheMeanOfItsMomentsWithAMovingCamera) {
     TestScene turning_slice = scene;
     turning_slice.materials = smooth_shutter().materials;
     // Between two directions of unit length the way is straight, as between() takes it.
-    expect_mean_of_stills(turning_slice, "turns");
+    expect_mean_of_stills(turning_slice, "turns", stills);
 }
+
+TEST(Shutter, IsTheMeanOfItsMomentsWithAMovingCamera) { expect_mean_with_a_moving_camera(40); }
+TEST(ShutterSlow, IsTheMeanOfItsMomentsWithAMovingCamera) { expect_mean_with_a_moving_camera(64); }
 
 TEST(Shutter, IsTheMeanOfItsMomentsInsideMovingGlass) {
     TestScene scene = smooth_shutter();

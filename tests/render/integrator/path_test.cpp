@@ -50,16 +50,19 @@ TestScene white_heap(Random& random, int bodies) {
     return scene;
 }
 
-TEST(Path, HeapsOfWhiteBodiesInAWhiteFurnaceCannotBeSeen) {
+void expect_white_heaps_unseen(int heaps) {
     // Nothing absorbs, so each ray brings back 1: mirrors, glass in glass, glass that stands in
     // diffuse bodies, rough ones. Only roulette and rough surfaces make noise.
     Random random(522);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < heaps; ++i) {
         const TracedScene traced(white_heap(random, 1 + i % 6));
         const Vec4 direction = (4 * Vec4::UnitZ() + random_vector(random, 0.6)).normalized();
         expect_near(mean_radiance(traced, direction, 2000), 1, 0.05, std::to_string(i));
     }
 }
+
+TEST(Path, HeapsOfWhiteBodiesInAWhiteFurnaceCannotBeSeen) { expect_white_heaps_unseen(18); }
+TEST(PathSlow, HeapsOfWhiteBodiesInAWhiteFurnaceCannotBeSeen) { expect_white_heaps_unseen(40); }
 
 TEST(Path, RoughBodyInAWhiteFurnaceShowsItsDirectionalAlbedo) {
     Random random(523);
@@ -180,11 +183,11 @@ Color path_reference(const TracedScene& t, const Ray& ray, int scattered, Random
     return s.material->emission + brdf * next.dot(s.normal) * pi * pi * from_next;
 }
 
-/// 40 rays into a scene with every kind of light that a ray can run into, diffuse and rough bodies
-/// that shade and light each other; the greatest of 120 differences of two means in units of its
-/// deviation stays below 4.5 with probability 0.999.
+/// Rays into a scene with every kind of light that a ray can run into, diffuse and rough bodies
+/// that shade and light each other; the greatest of the 120 differences of 40 rays of two means in
+/// units of its deviation stays below 4.5 with probability 0.999.
 /// @param more   small lamps beside the five that there are
-void expect_reference(int more) {
+void expect_reference(int more, int rays) {
     Random random(525);
     TestScene scene = path_scene(2);
     scene.materials.resize(3);
@@ -214,7 +217,7 @@ void expect_reference(int more) {
     const TracedScene traced(scene);
     double worst = 0, square = 0;
     int differing = 0;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < rays; ++i) {
         const Vec4 direction = (4 * Vec4::UnitZ() + random_vector(random, 1.5)).normalized();
         const Mean found = mean_radiance(traced, direction, 3000);
         Mean expected;
@@ -232,15 +235,19 @@ void expect_reference(int more) {
             square += difference * difference / (sigma * sigma);
         }
     }
-    EXPECT_GT(differing, 60);
+    EXPECT_GT(differing, rays * 3 / 2);
     EXPECT_LT(worst, 4.5);
     // Their squares have mean 1; the channels of a ray are not independent: a third of the number.
     EXPECT_NEAR(square / differing, 1, 5 * std::sqrt(2.0 / (differing / 3.0)));
 }
 
 TEST(Path, AgreesWithItsReference) {
-    expect_reference(0);
-    expect_reference(16);
+    expect_reference(0, 12);
+    expect_reference(16, 12);
+}
+TEST(PathSlow, AgreesWithItsReference) {
+    expect_reference(0, 40);
+    expect_reference(16, 40);
 }
 
 TEST(Path, BodiesThatGlowHaveTheNoiseOfSphereLights) {

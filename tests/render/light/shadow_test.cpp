@@ -262,7 +262,7 @@ TEST(RimSine, OfALimitedRayIsTheLeastRatioBeforeTheLimit) {
     EXPECT_GT(cut, 50);
 }
 
-TEST(Shadows, TreeLosesNoBody) {
+void expect_shadows_of_all_bodies(int points) {
     // Against the least rim over all bodies, one by one: the same bits, since a body that is left
     // out cannot have a smaller one.
     Random random(38);
@@ -277,7 +277,7 @@ TEST(Shadows, TreeLosesNoBody) {
         const PlacedBodies placed = place_bodies(scene.picture(), random_vector(random, 4));
         const BodyTree tree(placed);
         const Shadows shadows(placed, tree);
-        for (int i = 0; i < 200; ++i) {
+        for (int i = 0; i < points; ++i) {
             const Vec4 point = random_vector(random, 6);
             const double angle = i % 4 == 0 ? 0 : uniform(random, 0.1, 30);
             const SunDisc sun = sun_disc(sun_at(random_direction(random), angle));
@@ -296,9 +296,12 @@ TEST(Shadows, TreeLosesNoBody) {
             hidden += expected == 0;
         }
     }
-    EXPECT_GT(partly, 250);
-    EXPECT_GT(hidden, 250);
+    EXPECT_GT(partly, points * 5 / 4);
+    EXPECT_GT(hidden, points * 5 / 4);
 }
+
+TEST(Shadows, TreeLosesNoBody) { expect_shadows_of_all_bodies(60); }
+TEST(ShadowsSlow, TreeLosesNoBody) { expect_shadows_of_all_bodies(200); }
 
 TEST(Shadows, SharedSurfacesAreLit) {
     // Bodies that lie in each other with one face or surface in common: points of it, off by
