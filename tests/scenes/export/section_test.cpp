@@ -174,10 +174,10 @@ size = [0.9, 0.4])",
                               R"(shape = "duocylinder"
 radii = [0.6, 0.35])"};
 
-TEST(Sections, OfPolytopesAreClosedConvexAndOnTheirSurfaces) {
+void expect_sections_of_polytopes(int cuts) {
     Rng rng(1);
     for (const std::string keys : kPolytopes)
-        for (int i = 0; i < 20; ++i) {
+        for (int i = 0; i < cuts; ++i) {
             const Cut cut = Cut::random(rng, keys, 0);
             expect_closed(cut.mesh, keys);
             expect_convex(cut.mesh, cut.size, keys);
@@ -191,6 +191,11 @@ TEST(Sections, OfPolytopesAreClosedConvexAndOnTheirSurfaces) {
                 EXPECT_NEAR(cut.distance(middle), 0, 1e-8 * cut.size) << keys;
             }
         }
+}
+
+TEST(Sections, OfPolytopesAreClosedConvexAndOnTheirSurfaces) { expect_sections_of_polytopes(6); }
+TEST(SectionsSlow, OfPolytopesAreClosedConvexAndOnTheirSurfaces) {
+    expect_sections_of_polytopes(20);
 }
 
 /// The content of a body is the integral of its sections' volumes over the height: by Simpson's
@@ -267,11 +272,11 @@ TEST(Sections, OfPolytopesInSpecialPlacesAreThePolyhedraOfTheBooks) {
 /// Vertices are on the surface and the mesh is inside, so all that is between the two is seen along
 /// rays from a point inside: the gap along any ray is at least the distance from either surface.
 /// The distance of a surface point from the mesh is that from the nearest polygon's plane at least.
-TEST(Sections, OfRoundBodiesKeepTheToleranceBothWays) {
+void expect_round_sections_within(int coarse, int fine) {
     Rng rng(3);
     for (const std::string keys : kRound)
         for (const double tolerance : {0.02, 2e-3, 3e-4})
-            for (int i = 0; i < (tolerance > 1e-3 ? 6 : 2); ++i) {
+            for (int i = 0; i < (tolerance > 1e-3 ? coarse : fine); ++i) {
                 const Cut cut = Cut::random(rng, keys, tolerance);
                 const std::string what = keys + " within " + std::to_string(tolerance);
                 expect_closed(cut.mesh, what);
@@ -299,6 +304,9 @@ TEST(Sections, OfRoundBodiesKeepTheToleranceBothWays) {
                 EXPECT_LE(farthest, tolerance * (1 + 1e-6)) << what;
             }
 }
+
+TEST(Sections, OfRoundBodiesKeepTheToleranceBothWays) { expect_round_sections_within(2, 1); }
+TEST(SectionsSlow, OfRoundBodiesKeepTheToleranceBothWays) { expect_round_sections_within(6, 2); }
 
 /// Distance from a point outside a convex mesh, by projecting on all its triangles.
 double distance_to_mesh(const Mesh& mesh, const Vec3& p) {

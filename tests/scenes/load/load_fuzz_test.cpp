@@ -135,11 +135,11 @@ class Damage {
     std::mt19937_64 random_;
 };
 
-TEST(LoadFuzz, DamagedScenesLoadOrAreRefused) {
+void expect_damaged_scenes_load_or_not(int scenes) {
     const SceneFile file("");
     Damage damage(20240607);
     int loaded = 0, refused = 0;
-    for (int i = 0; i < 8000; ++i) {
+    for (int i = 0; i < scenes; ++i) {
         const std::string text = damage(kSeed);
         // A new file each time: some file systems sync one that is cut to nothing and written
         // again.
@@ -157,17 +157,20 @@ TEST(LoadFuzz, DamagedScenesLoadOrAreRefused) {
         }
     }
     // Both roads were walked: most damage is seen, some (in comments and digits) does not matter.
-    EXPECT_GT(loaded, 80);
-    EXPECT_GT(refused, 4000);
+    EXPECT_GT(loaded, scenes / 100);
+    EXPECT_GT(refused, scenes / 2);
 }
 
-TEST(LoadFuzz, DamagedOverridesLoadOrAreRefused) {
+TEST(LoadFuzz, DamagedScenesLoadOrAreRefused) { expect_damaged_scenes_load_or_not(2000); }
+TEST(LoadFuzzSlow, DamagedScenesLoadOrAreRefused) { expect_damaged_scenes_load_or_not(8000); }
+
+void expect_damaged_overrides_load_or_not(int overrides) {
     const SceneFile file(kSeed);
     Damage damage(7);
     const std::vector<std::string> seeds = {
         "body.floor.normal=[0, 1, 0, 1]", "render.crop=[0, 0, 8, 8]",
         "lattice.body-2.count=[1, 2, 1, 1]", "body.\"body-1\".rotation={ xy = 30 }"};
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < overrides; ++i) {
         const std::vector<std::string> sets = {
             damage(seeds[static_cast<std::size_t>(i) % seeds.size()])};
         try {
@@ -179,6 +182,9 @@ TEST(LoadFuzz, DamagedOverridesLoadOrAreRefused) {
         }
     }
 }
+
+TEST(LoadFuzz, DamagedOverridesLoadOrAreRefused) { expect_damaged_overrides_load_or_not(1000); }
+TEST(LoadFuzzSlow, DamagedOverridesLoadOrAreRefused) { expect_damaged_overrides_load_or_not(4000); }
 
 /// Cutting loses nothing: the pieces in the gaps of the rest are the text again.
 TEST(LoadFuzz, PiecesAddUpToTheText) {

@@ -10,8 +10,8 @@
 namespace tesserae::scenes {
 namespace {
 
-/// How a process ends that is asked to stop and goes on for so long [s].
-int status_of_work(int signal, int seconds) {
+/// Begins a process that is asked to stop and goes on for so long [s].
+pid_t begin_work(int signal, int seconds) {
     const pid_t child = ::fork();
     if (child == 0) {
         ::close(STDERR_FILENO);
@@ -24,15 +24,21 @@ int status_of_work(int signal, int seconds) {
         while (std::time(nullptr) < end) ::usleep(1000);
         ::_exit(0);
     }
+    return child;
+}
+
+int status_at_end(pid_t child) {
     int status = 0;
     ::waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
 }
 
 TEST(Signals, EndWorkThatDoesNotStop) {
-    EXPECT_EQ(status_of_work(SIGTERM, 0), 0) << "it stopped";
-    EXPECT_EQ(status_of_work(SIGTERM, 60), 143);
-    EXPECT_EQ(status_of_work(SIGINT, 60), 130);
+    const pid_t stops = begin_work(SIGTERM, 0);
+    const pid_t terminated = begin_work(SIGTERM, 60), interrupted = begin_work(SIGINT, 60);
+    EXPECT_EQ(status_at_end(stops), 0) << "it stopped";
+    EXPECT_EQ(status_at_end(terminated), 143);
+    EXPECT_EQ(status_at_end(interrupted), 130);
 }
 
 }  // namespace

@@ -26,11 +26,13 @@ TEST(Interrupt, SignalsGiveTheirStatusAndTheSameCommandFinishes) {
     const Folder folder("signals");
     const auto scene = folder.write("drop.toml", small_scene(2));
     const auto command = [&](const char* out) {
-        return std::vector<std::string>{"run", scene, "-o", folder.file(out), "--size", "160x120"};
+        // Slow enough on any machine to be stopped twice.
+        return std::vector<std::string>{"run",    scene,   "-o",        folder.file(out),
+                                        "--size", "96x72", "--threads", "2"};
     };
     ASSERT_EQ(tesserae(command("straight")).status, 0);
     int stopped = 0;
-    for (int delay : {1, 30, 100, 250, 400}) {
+    for (int delay : {1, 30, 60, 100, 150}) {
         const int signal = delay % 20 == 0 ? SIGINT : SIGTERM;
         const Outcome outcome = tesserae(command("out"), signal, delay);
         // Done already, or ended by the system before main began.
@@ -55,7 +57,7 @@ TEST(Interrupt, KillsLoseNothing) {
     const Folder folder("kills");
     const auto scene = folder.write("drop.toml", small_scene(1));
     const auto command = [&](const char* out) {
-        return std::vector<std::string>{"run", scene, "-o", folder.file(out), "--size", "160x120"};
+        return std::vector<std::string>{"run", scene, "-o", folder.file(out), "--size", "96x72"};
     };
     ASSERT_EQ(tesserae(command("straight")).status, 0);
     std::mt19937 random(1);

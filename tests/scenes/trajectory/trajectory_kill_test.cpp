@@ -125,7 +125,7 @@ void expect_continued(const fs::path& file, std::uint64_t flushed) {
 /// Of so many states one is looked at: of all in the slow set.
 int looked_at() {
     const std::string suite = ::testing::UnitTest::GetInstance()->current_test_suite()->name();
-    return suite.ends_with("Slow") ? 1 : 5;
+    return suite.ends_with("Slow") ? 1 : 20;
 }
 
 /// Traces `work`, which writes below `path` and counts what it has flushed, and checks the states.
@@ -257,7 +257,7 @@ void expect_whole_while_continued(int continue_every) {
 }
 
 TEST(TrajectoryKill, AtAWriteOfAContinuedFileTheFinishedOneIsWhole) {
-    expect_whole_while_continued(35);
+    expect_whole_while_continued(80);
 }
 
 TEST(TrajectoryKillSlow, EveryStateOfAContinuedFileIsContinued) { expect_whole_while_continued(1); }
