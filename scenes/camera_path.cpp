@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace tesserae::scenes {
 
@@ -49,12 +50,13 @@ CameraPath::Knots<T> CameraPath::knots_of(std::span<const CameraKey> keys,
     return knots;
 }
 
-/// Change per second at knot i.
+/// Change per second at knot i, as the segment between it and its neighbour has it.
 template <class Space, class T>
-T CameraPath::slope(const Knots<T>& knots, std::size_t i) {
+T CameraPath::slope(const Knots<T>& knots, std::size_t i, std::size_t neighbour) {
     const auto rate = [&](std::size_t to) -> T {
         return Space::way(knots[i].value, knots[to].value) / (knots[to].time - knots[i].time);
     };
+    if (knots[i].slope) return is_zero(rate(neighbour)) ? T(0 * *knots[i].slope) : *knots[i].slope;
     if (i == 0) return rate(1);
     if (i + 1 == knots.size()) return rate(i - 1);
     const T before = rate(i - 1), after = rate(i + 1);
@@ -73,8 +75,8 @@ T CameraPath::value_at(const Knots<T>& knots, const T& still, double time) {
     const auto i = static_cast<std::size_t>(next - knots.begin()) - 1;
     const Knot<T>&from = knots[i], &to = knots[i + 1];
     const double h = to.time - from.time, t = (time - from.time) / h;
-    T points[] = {from.value, Space::moved(from.value, T(h / 3 * slope<Space>(knots, i))),
-                  Space::moved(to.value, T(-h / 3 * slope<Space>(knots, i + 1))), to.value};
+    T points[] = {from.value, Space::moved(from.value, T(h / 3 * slope<Space>(knots, i, i + 1))),
+                  Space::moved(to.value, T(-h / 3 * slope<Space>(knots, i + 1, i))), to.value};
     for (int count = 3; count > 0; --count)
         for (int k = 0; k < count; ++k)
             points[k] = Space::moved(points[k], T(t * Space::way(points[k], points[k + 1])));
@@ -83,15 +85,41 @@ T CameraPath::value_at(const Knots<T>& knots, const T& still, double time) {
 
 CameraPath::CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys)
     : still_(still),
-      position_(knots_of(keys, &CameraKey::position)),
       look_at_(knots_of(keys, &CameraKey::look_at)),
       up_(knots_of(keys, &CameraKey::up)),
       fourth_(knots_of(keys, &CameraKey::fourth)),
-      field_of_view_(knots_of(keys, &CameraKey::field_of_view)) {}
+      field_of_view_(knots_of(keys, &CameraKey::field_of_view)) {
+    add_positions(keys);
+}
+
+void CameraPath::add_positions(std::span<const CameraKey> keys) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const CameraKey& key = keys[i];
+        if (key.position) position_.push_back({key.time, *key.position});
+        if (!key.orbit) continue;
+        // Where the key before left the camera.
+        const double begin = i > 0 ? keys[i - 1].time : 0;
+        if (position_.empty() || position_.back().time < begin)
+            position_.push_back(
+                {begin, position_.empty() ? still_.position : position_.back().value});
+        const CameraArc arc = {begin, key.time, position_.back().value, *key.orbit, key.ease};
+        position_.back().slope = arc.velocity(begin);
+        position_.push_back({key.time, arc.at(key.time), arc.velocity(key.time)});
+        arcs_.push_back(arc);
+    }
+}
+
+Vec4 CameraPath::position_at(double time) const {
+    const auto next =
+        std::upper_bound(arcs_.begin(), arcs_.end(), time,
+                         [](double t, const CameraArc& arc) { return t < arc.begin; });
+    if (next != arcs_.begin() && time < std::prev(next)->end) return std::prev(next)->at(time);
+    return value_at<Flat>(position_, still_.position, time);
+}
 
 render::CameraDescription CameraPath::at(double time) const {
     render::CameraDescription camera = still_;
-    camera.position = value_at<Flat>(position_, still_.position, time);
+    camera.position = position_at(time);
     camera.look_at = value_at<Flat>(look_at_, still_.look_at, time);
     camera.up = value_at<Sphere>(up_, still_.up, time);
     camera.fourth = value_at<Sphere>(fourth_, still_.fourth, time);

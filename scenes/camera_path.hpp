@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/description.hpp"
+#include "scenes/camera_orbit.hpp"
 
 namespace tesserae::scenes {
 
@@ -15,6 +16,8 @@ struct CameraKey {
     std::optional<Vec4> position, look_at;
     std::optional<Vec4> up, fourth;  ///< unit; no two that follow each other are opposite
     std::optional<double> field_of_view;
+    std::optional<CameraOrbit> orbit;  ///< instead of a position: how it comes from the key before
+    Ease ease = Ease::kLinear;         ///< how the orbit goes through its time
 };
 
 /// The camera at any time: each part goes smoothly through the keys that name it (ascending in
@@ -23,7 +26,7 @@ struct CameraKey {
 ///
 /// Cubic Bezier arcs whose slopes at a key are those of the parabola through it and its neighbours
 /// (Catmull-Rom for uneven times), by de Casteljau's construction, which on the sphere takes great
-/// arcs for segments (Shoemake 1985).
+/// arcs for segments (Shoemake 1985). An orbit is a circle instead; what meets it has its slope.
 class CameraPath {
   public:
     CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys);
@@ -37,6 +40,7 @@ class CameraPath {
     struct Knot {
         double time;
         T value;
+        std::optional<T> slope = {};  ///< of the orbit that begins or ends here
     };
     /// The keys that name a part.
     template <class T>
@@ -47,13 +51,17 @@ class CameraPath {
     template <class T>
     static Knots<T> knots_of(std::span<const CameraKey> keys, std::optional<T> CameraKey::*part);
     template <class Space, class T>
-    static T slope(const Knots<T>& knots, std::size_t i);
+    static T slope(const Knots<T>& knots, std::size_t i, std::size_t neighbour);
     template <class Space, class T>
     static T value_at(const Knots<T>& knots, const T& still, double time);
+
+    void add_positions(std::span<const CameraKey> keys);
+    Vec4 position_at(double time) const;
 
     render::CameraDescription still_;
     Knots<Vec4> position_, look_at_, up_, fourth_;
     Knots<double> field_of_view_;
+    std::vector<CameraArc> arcs_;  ///< ascending in time
 };
 
 /// The same for one time: it takes as long as there are keys.

@@ -34,9 +34,31 @@ void require_frame(TableReader& reader, const render::CameraDescription& c) {
                                 toml_text(c.up)));
 }
 
+/// What the keys of one [[camera.key]] ask of each other.
+/// @param here   where the camera is at the key before
+void require_orbit(TableReader& reader, const CameraKey& key, const Vec4& here, bool is_first) {
+    if (!key.orbit) {
+        if (reader.has("ease"))
+            reader.fail("ease",
+                        "is of an orbit, and this key has none; expected an orbit beside it");
+        return;
+    }
+    if (key.position) reader.fail("orbit", "there is a position too; expected only one of them");
+    if (is_first && !(key.time > 0))
+        reader.fail("time",
+                    "the orbit of the first key takes the time from 0 s to this; expected a time "
+                    "> 0, or a key before it that says where the orbit begins");
+    if (!(key.orbit->radius(here) > 0))
+        reader.fail("orbit",
+                    fmt::format("the camera is at {} before, on the axis that it would go round; "
+                                "expected an about beside it in the plane",
+                                toml_text(here)));
+}
+
 void load_keys(TableReader& camera, const Origin& origin, Scene& scene, EffectiveWriter& out) {
     std::vector<const toml::table*> tables;
     camera.collect([&] { tables = camera.tables("key"); });
+    Vec4 here = scene.camera.position;
     for (std::size_t i = 0; i < tables.size(); ++i)
         camera.collect([&] {
             const std::vector<CameraKey>& before = scene.camera_keys;
@@ -44,10 +66,14 @@ void load_keys(TableReader& camera, const Origin& origin, Scene& scene, Effectiv
             CameraKey key;
             camera_key_keys(key, ReadKeys{reader}, before);
             reader.finish();
-            if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view)
-                reader.fail_here("expected position, look_at, up, fourth or field_of_view");
+            require_orbit(reader, key, here, i == 0);
+            if (!key.position && !key.look_at && !key.up && !key.fourth && !key.field_of_view &&
+                !key.orbit)
+                reader.fail_here("expected position, look_at, up, fourth, field_of_view or orbit");
             out.table("[[camera.key]]");
             camera_key_keys(key, WriteKeys{out}, before);
+            if (key.position) here = *key.position;
+            if (key.orbit) here = key.orbit->turned(here, 1);
             scene.camera_keys.push_back(key);
         });
 }

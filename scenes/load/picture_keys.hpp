@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "scenes/camera_path.hpp"
+#include "scenes/load/camera_keys.hpp"
 #include "scenes/load/rules.hpp"
 
 // The keys of the tables that make the picture, one list a table (see rules.hpp). A list in parts
@@ -255,6 +256,14 @@ void camera_key_keys(auto& self, const auto& visit, std::span<const CameraKey> b
            "The picture spans this angle from its bottom to its top at this time.",
            "as other keys say"},
           self.field_of_view, kFieldOfView);
+    visit({"orbit", "",
+           "The camera comes here on a circle, from where it is at the key before, or at 0 s if "
+           "this is the first.",
+           "as other keys say"},
+          self.orbit, OrbitTable{});
+    visit({"ease", "",
+           "The orbit goes at the same speed all the time, begins at rest, ends at rest, or both."},
+          self.ease, NamesOrUnwritten{{kEases}});
 }
 
 constexpr int kMaxSize = 65536;

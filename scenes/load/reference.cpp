@@ -230,6 +230,7 @@ std::vector<Table> all_tables() {
     const Lattice lattice;
     const render::CameraDescription camera;
     const CameraKey key;
+    const CameraOrbit orbit;
     const render::Settings settings;
     const Overlay overlay;
     const Caption caption;
@@ -262,7 +263,8 @@ std::vector<Table> all_tables() {
          "[[camera.key]]",
          "What the camera is like at a time; it moves smoothly from key to key. Each has at least "
          "one key beside its time.",
-         {part_of("", [&](Visit visit) { camera_key_keys(key, visit, {}); })}},
+         {part_of("", [&](Visit visit) { camera_key_keys(key, visit, {}); }),
+          part_of("orbit = { ... }", [&](Visit visit) { orbit_keys(orbit, visit); })}},
         light_table(),
         {"render",
          "[render]",

@@ -406,6 +406,15 @@ bool TableReader::is_array(std::string_view key) {
     return node != nullptr && node->is_array();
 }
 
+const toml::table* TableReader::inner_table(std::string_view key, const char* example) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return nullptr;
+    const auto* table = node->as_table();
+    if (table == nullptr)
+        fail_at(*node, key, fmt::format("wrong type; expected a table such as {}", example));
+    return table;
+}
+
 const toml::table* TableReader::table(std::string_view key) {
     const toml::node* node = find(key);
     if (node == nullptr) return nullptr;

@@ -103,6 +103,18 @@ class TableReader {
     bool read(std::string_view key, std::size_t& value, std::span<const std::string_view> names);
     bool is_array(std::string_view key);
 
+    /// Has `work` read the keys of the table that a key holds.
+    /// @param example   what the error of a wrong type shows
+    template <class Work>
+    bool read_inside(std::string_view key, const char* example, const Work& work) {
+        const toml::table* const inner = inner_table(key, example);
+        if (inner == nullptr) return false;
+        TableReader reader(*inner, origin_, subject_ + ": " + std::string(key));
+        work(reader);
+        reader.finish();
+        return true;
+    }
+
     /// The subtable of that name, if there is one.
     const toml::table* table(std::string_view key);
     /// The tables of an array of tables, in file order.
@@ -123,6 +135,7 @@ class TableReader {
 
   private:
     const toml::node* find(std::string_view key);
+    const toml::table* inner_table(std::string_view key, const char* example);
     std::string what_of(const toml::node& node, std::string_view key, std::string_view what) const;
     std::string text_at(const toml::node& node, std::string_view key, std::string_view what) const;
     PlacedError unknown_key(const toml::key& key, const toml::node& node) const;

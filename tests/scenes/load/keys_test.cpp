@@ -86,6 +86,9 @@ std::string other(const T&, const Flags<T>& flags) {
 }
 std::string other(const render::Settings&, FrameSize) { return "[64, 48]"; }
 std::string other(const render::Crop&, CropOf) { return "[0, 0, 3, 2]"; }
+std::string other(const CameraOrbit&, OrbitTable) {
+    return "{ about = [0, 1, 0, 0], plane = \"yw\", angle = 40 }";
+}
 std::string other(const Shape&, AnyShape) { return "\"hypercapsule\""; }
 std::string other(const BodyTable&, MassOfBody) { return "3"; }
 std::string other(const BodyTable&, DensityOfBody) { return "3"; }
@@ -186,8 +189,13 @@ TEST(Keys, OfTheFilmAreReadAndWritten) {
         file_keys(scene.render, visit);
     });
     const CameraKey key;
-    expect_all_written({"[[camera.key]]", 0,
-                        set_in_list("camera.key", {{"time", "0"}, {"position", "[1, 1, -8, 0]"}})},
+    const auto set_in_key = [](const std::string& name, const std::string& value) {
+        std::map<std::string, std::string> others = {{"time", "0"}, {"position", "[1, 1, -8, 0]"}};
+        if (name == "orbit" || name == "ease")
+            others = {{"time", "1"}, {"orbit", other(CameraOrbit(), OrbitTable())}};
+        return set_in_list("camera.key", others)(name, value);
+    };
+    expect_all_written({"[[camera.key]]", 0, set_in_key},
                        [&](const auto& visit) { camera_key_keys(key, visit, {}); });
     expect_all_written({"[overlay]", 0, set_in("overlay"), {}, {"caption"}},
                        [&](const auto& visit) { overlay_keys(scene.overlay, visit); });
