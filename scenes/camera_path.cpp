@@ -90,6 +90,7 @@ CameraPath::CameraPath(const render::CameraDescription& still, std::span<const C
       fourth_(knots_of(keys, &CameraKey::fourth)),
       field_of_view_(knots_of(keys, &CameraKey::field_of_view)) {
     add_positions(keys);
+    carried_up_ = CarriedUp([this](double time) { return keyed_at(time); }, moments(keys));
 }
 
 void CameraPath::add_positions(std::span<const CameraKey> keys) {
@@ -117,7 +118,32 @@ Vec4 CameraPath::position_at(double time) const {
     return value_at<Flat>(position_, still_.position, time);
 }
 
+std::vector<double> CameraPath::moments(std::span<const CameraKey> keys) const {
+    // Parts of a segment: a cubic does not go round in one, an orbit not in this angle [degrees].
+    constexpr double kParts = 16, kAngle = 10;
+    if (std::max({position_.size(), look_at_.size(), up_.size(), fourth_.size()}) < 2) return {};
+    std::vector<double> ends;
+    if (keys.front().orbit) ends.push_back(0);
+    for (const CameraKey& key : keys) ends.push_back(key.time);
+    std::vector<double> times = {ends.front()};
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        const CameraKey& key = keys[i + keys.size() - ends.size()];
+        const double begin = times.back(), angle = key.orbit ? std::abs(key.orbit->angle) : 0;
+        const double parts = std::max(kParts, std::ceil(angle / kAngle));
+        for (double part = 1; part < parts; ++part)
+            times.push_back(begin + part / parts * (key.time - begin));
+        times.push_back(key.time);
+    }
+    return times;
+}
+
 render::CameraDescription CameraPath::at(double time) const {
+    render::CameraDescription camera = keyed_at(time);
+    if (!carried_up_.is_empty()) camera.up = carried_up_.at(time, camera);
+    return camera;
+}
+
+render::CameraDescription CameraPath::keyed_at(double time) const {
     render::CameraDescription camera = still_;
     camera.position = position_at(time);
     camera.look_at = value_at<Flat>(look_at_, still_.look_at, time);

@@ -7,6 +7,7 @@
 
 #include "render/description.hpp"
 #include "scenes/camera_orbit.hpp"
+#include "scenes/carried_up.hpp"
 
 namespace tesserae::scenes {
 
@@ -27,6 +28,7 @@ struct CameraKey {
 /// Cubic Bezier arcs whose slopes at a key are those of the parabola through it and its neighbours
 /// (Catmull-Rom for uneven times), by de Casteljau's construction, which on the sphere takes great
 /// arcs for segments (Shoemake 1985). An orbit is a circle instead; what meets it has its slope.
+/// Where the view comes near to looking along `up`, see CarriedUp.
 class CameraPath {
   public:
     CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys);
@@ -57,17 +59,17 @@ class CameraPath {
 
     void add_positions(std::span<const CameraKey> keys);
     Vec4 position_at(double time) const;
+    /// As the keys say, without the law of CarriedUp.
+    render::CameraDescription keyed_at(double time) const;
+    /// Those of the keys, and between them so many that no spline or orbit goes round unseen; none
+    /// if the view does not turn.
+    std::vector<double> moments(std::span<const CameraKey> keys) const;
 
     render::CameraDescription still_;
     Knots<Vec4> position_, look_at_, up_, fourth_;
     Knots<double> field_of_view_;
     std::vector<CameraArc> arcs_;  ///< ascending in time
+    CarriedUp carried_up_;
 };
-
-/// The same for one time: it takes as long as there are keys.
-inline render::CameraDescription camera_at(const render::CameraDescription& still,
-                                           std::span<const CameraKey> keys, double time) {
-    return CameraPath(still, keys).at(time);
-}
 
 }  // namespace tesserae::scenes

@@ -37,6 +37,8 @@ struct Scene {
     std::string effective;  ///< canonical TOML after overrides: the same scene gives the same text
     std::string hash;       ///< 32 hex digits of `effective`
     std::string motion_hash;  ///< of a trajectory that this program makes of it
+
+    CameraPath camera_path() const { return CameraPath(camera, camera_keys); }
 };
 
 }  // namespace tesserae::scenes

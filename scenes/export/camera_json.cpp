@@ -21,9 +21,8 @@ OrderedJson json_list(const Vector& v) {
 }  // namespace
 
 std::string camera_json(const Scene& scene, const std::string& hash) {
-    const auto description = [&](int frame) {
-        return camera_at(scene.camera, scene.camera_keys, frame_instant(scene, frame).time);
-    };
+    const CameraPath path = scene.camera_path();
+    const auto description = [&](int frame) { return path.at(frame_instant(scene, frame).time); };
     const int width = scene.render.width, height = scene.render.height;
     const render::Camera first(description(0), width, height);
     OrderedJson json = {{"tesserae", hash},

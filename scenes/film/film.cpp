@@ -56,13 +56,13 @@ struct Exposure {
     std::vector<render::ShutterMoment> path;
     std::optional<Moment> after, before;  ///< the frames beside, for vectors of motion
 
-    Exposure(const Scene& scene, Poses& poses, int frame)
-        : opening(moment(scene, poses, frame_instant(scene, frame))) {
+    Exposure(const Scene& scene, const CameraPath& camera, Poses& poses, int frame)
+        : opening(moment(camera, poses, frame_instant(scene, frame))) {
         if (scene.render.channels.motion) {
-            after = neighbour(scene, poses, frame, 1);
-            before = neighbour(scene, poses, frame, -1);
+            after = neighbour(scene, camera, poses, frame, 1);
+            before = neighbour(scene, camera, poses, frame, -1);
         }
-        if (scene.camera.shutter > 0) open_shutter(scene, poses, frame);
+        if (scene.camera.shutter > 0) open_shutter(scene, camera, poses, frame);
     }
 
     /// But for what is random in the picture.
@@ -87,12 +87,12 @@ struct Exposure {
     }
 
   private:
-    void open_shutter(const Scene& scene, Poses& poses, int frame) {
+    void open_shutter(const Scene& scene, const CameraPath& camera, Poses& poses, int frame) {
         const double begin = frame_instant(scene, frame).time;
         const double rate = scene.physics ? scene.physics->steps_per_second : 1;
         bool is_still = true;
         const auto add = [&](const FrameInstant& instant) {
-            Moment at = moment(scene, poses, instant);
+            Moment at = moment(camera, poses, instant);
             is_still = is_still && at.looks_like(opening, scene);
             path.push_back({instant.time - begin, std::move(at.bodies), at.camera});
         };
@@ -109,18 +109,16 @@ struct Exposure {
 
     /// The frame `by` frames on. Where there is none the bodies of this one go on at their
     /// velocities.
-    Moment neighbour(const Scene& scene, Poses& poses, int frame, int by) const {
+    Moment neighbour(const Scene& scene, const CameraPath& camera, Poses& poses, int frame,
+                     int by) const {
         const FrameInstant at = frame_instant(scene, frame + by);
-        if (has_frame(scene, frame + by)) return moment(scene, poses, at);
-        Moment coasting = {{opening.bodies, camera_of(scene, at)}};
+        if (has_frame(scene, frame + by)) return moment(camera, poses, at);
+        Moment coasting = {{opening.bodies, camera.at(at.time)}};
         coast(coasting.bodies, by / scene.render.frames_per_second);
         return coasting;
     }
-    static render::CameraDescription camera_of(const Scene& scene, const FrameInstant& instant) {
-        return camera_at(scene.camera, scene.camera_keys, instant.time);
-    }
-    static Moment moment(const Scene& scene, Poses& poses, const FrameInstant& instant) {
-        return {{poses.at(instant), camera_of(scene, instant)}};
+    static Moment moment(const CameraPath& camera, Poses& poses, const FrameInstant& instant) {
+        return {{poses.at(instant), camera.at(instant.time)}};
     }
 };
 
@@ -168,6 +166,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     const auto begin = std::chrono::steady_clock::now();
     const bool is_changed = !require_folder_of(scene, folder, replace).empty();
     Poses poses(scene, frames, trajectory);
+    const CameraPath camera = scene.camera_path();
 
     FilmReport report;
     report.frames = folder / "frames";
@@ -202,7 +201,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
             if (parts > 1) remove_parts(files.exr, parts);
             continue;
         }
-        Exposure exposure(scene, poses, info.frame);
+        Exposure exposure(scene, camera, poses, info.frame);
         render::Picture picture = exposure.picture(scene, info.frame);
         if (mattes) picture.mattes = &*mattes;
         std::vector<render::Stamp> overlay;

@@ -103,7 +103,7 @@ void load_camera(TableReader& root, const Origin& origin, Scene& scene, Effectiv
 
 void require_view(const Scene& scene, const Origin& origin) {
     if (scene.camera_keys.empty()) return;
-    const CameraPath path(scene.camera, scene.camera_keys);
+    const CameraPath path = scene.camera_path();
     for (int frame = 0, count = frame_count(scene); frame < count; ++frame) {
         const double time = frame_instant(scene, frame).time;
         try {

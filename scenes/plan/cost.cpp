@@ -50,9 +50,8 @@ std::vector<TimedBodies> poses_of(const Scene& scene, const fs::path& trajectory
 render::FrameCost cost_of(const Scene& scene, const TimedBodies& at, double seconds,
                           const fs::path& folder) {
     const double rate = scene.render.frames_per_second;
-    const auto camera = [&](double time) {
-        return camera_at(scene.camera, scene.camera_keys, time);
-    };
+    const CameraPath path_of_camera = scene.camera_path();
+    const auto camera = [&](double time) { return path_of_camera.at(time); };
     const render::CameraDescription opening = camera(at.time);
     // How they move meanwhile and where they are a frame later: by their velocities.
     std::vector<render::ShutterMoment> path;

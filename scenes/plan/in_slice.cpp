@@ -142,9 +142,10 @@ SliceReport look_at_slice(const Scene& scene, const std::filesystem::path& traje
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(frames[i * frames.size() / count]);
     Poses poses(scene, chosen, trajectory);
     Looks looks(scene);
+    const CameraPath path = scene.camera_path();
     for (const int frame : chosen) {
         const FrameInstant at = frame_instant(scene, frame);
-        looks.add(at.time, poses.at(at), camera_at(scene.camera, scene.camera_keys, at.time));
+        looks.add(at.time, poses.at(at), path.at(at.time));
     }
     return std::move(looks).report();
 }

@@ -165,7 +165,7 @@ void warn_of_hidden_glass(const Scene& scene, Plan& plan) {
 void count_off_slice(const Scene& scene, Plan& plan) {
     const auto visible =
         count_if_type(scene.bodies, [&](auto t) { return scene.appearance[t].visible; });
-    const render::CameraDescription camera = camera_at(scene.camera, scene.camera_keys, 0);
+    const render::CameraDescription camera = scene.camera_path().at(0);
     const double half = 0.5 * camera.slice_thickness;
     const render::Picture picture = picture_of(scene, camera);
     const render::Camera frame(camera, scene.render.width, scene.render.height);

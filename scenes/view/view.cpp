@@ -28,18 +28,19 @@ class ViewPoses {
   public:
     ViewPoses(const Scene& scene, const fs::path& trajectory) : bodies_(scene.bodies) {
         const std::vector<int> frames = parse_frames("", frame_count(scene));
+        const CameraPath path = scene.camera_path();
         if (!trajectory.empty()) rows_ = std::make_unique<TrajectoryReader>(trajectory);
         if (!rows_ || has_steps_of(scene, frames)) {
             rows_.reset();
             poses_ = std::make_unique<Poses>(scene, frames, trajectory);
             for (const int frame : frames) instants_.push_back(frame_instant(scene, frame));
-            for (const FrameInstant& at : instants_) add_moment(scene, at.time);
+            for (const FrameInstant& at : instants_) add_moment(path, at.time);
             return;
         }
         if (rows_->rows() == 0)
             throw InputError(fmt::format("{}: holds no step yet", trajectory.string()));
         Poses(scene, {}, trajectory);  // checks that it is of this scene's motion
-        for (const double time : rows_->times()) add_moment(scene, time);
+        for (const double time : rows_->times()) add_moment(path, time);
     }
 
     const std::vector<ViewMoment>& moments() const { return moments_; }
@@ -61,8 +62,8 @@ class ViewPoses {
         }
         return true;
     }
-    void add_moment(const Scene& scene, double time) {
-        moments_.push_back({time, camera_at(scene.camera, scene.camera_keys, time)});
+    void add_moment(const CameraPath& path, double time) {
+        moments_.push_back({time, path.at(time)});
     }
 
     Bodies bodies_;

@@ -17,6 +17,11 @@ namespace {
 constexpr Ease kAllEases[] = {Ease::kLinear, Ease::kIn, Ease::kOut, Ease::kInOut};
 constexpr double kDegree = std::numbers::pi / 180;
 
+render::CameraDescription camera_at(const render::CameraDescription& still,
+                                    std::span<const CameraKey> keys, double time) {
+    return CameraPath(still, keys).at(time);
+}
+
 /// The part of the way, from the integral of a speed that is even, grows, shrinks, or does both.
 double part_of_way(Ease ease, double t) {
     switch (ease) {

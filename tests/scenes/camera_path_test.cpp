@@ -17,6 +17,11 @@ constexpr double kRounding = 1e-12;
 
 using Random = std::mt19937_64;
 
+render::CameraDescription camera_at(const render::CameraDescription& still,
+                                    std::span<const CameraKey> keys, double time) {
+    return CameraPath(still, keys).at(time);
+}
+
 Vec4 random_vector(Random& random) {
     std::normal_distribution<double> normal;
     return {normal(random), normal(random), normal(random), normal(random)};
