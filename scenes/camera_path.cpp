@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
+
+#include "core/error.hpp"
+#include "scenes/load/effective.hpp"
 
 namespace tesserae::scenes {
 
@@ -83,13 +87,46 @@ T CameraPath::value_at(const Knots<T>& knots, const T& still, double time) {
     return points[0];
 }
 
-CameraPath::CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys)
+template <class T>
+void CameraPath::close(Knots<T>& knots) const {
+    if (knots.empty()) return;
+    // Two more on either side have the slopes between them as if there were no end.
+    constexpr int kMore = 2;
+    // The last key is the first again.
+    if (knots.size() > 1 && knots.back().time - knots.front().time == period_) {
+        if (!knots.front().slope) knots.front().slope = knots.back().slope;
+        knots.pop_back();
+    }
+    const auto count = static_cast<int>(knots.size());
+    Knots<T> all;
+    for (int i = -kMore; i < count + kMore; ++i) {
+        const int round = i < 0 ? (i + 1) / count - 1 : i / count;
+        Knot<T> knot = knots[static_cast<std::size_t>(i - round * count)];
+        knot.time += round * period_;
+        all.push_back(knot);
+    }
+    knots = std::move(all);
+}
+
+double CameraPath::wrapped(double time) const {
+    if (period_ == 0 || (time >= first_ && time <= first_ + period_)) return time;
+    const double rest = std::fmod(time - first_, period_);
+    return first_ + (rest < 0 ? rest + period_ : rest);
+}
+
+CameraPath::CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys,
+                       bool closed)
     : still_(still),
       look_at_(knots_of(keys, &CameraKey::look_at)),
       up_(knots_of(keys, &CameraKey::up)),
       fourth_(knots_of(keys, &CameraKey::fourth)),
       field_of_view_(knots_of(keys, &CameraKey::field_of_view)) {
     add_positions(keys);
+    if (closed && !keys.empty()) {
+        first_ = keys.front().time, period_ = keys.back().time - first_;
+        for (Knots<Vec4>* const knots : {&position_, &look_at_, &up_, &fourth_}) close(*knots);
+        close(field_of_view_);
+    }
     carried_up_ = CarriedUp([this](double time) { return keyed_at(time); }, moments(keys));
 }
 
@@ -138,6 +175,7 @@ std::vector<double> CameraPath::moments(std::span<const CameraKey> keys) const {
 }
 
 render::CameraDescription CameraPath::at(double time) const {
+    time = wrapped(time);
     render::CameraDescription camera = keyed_at(time);
     if (!carried_up_.is_empty()) camera.up = carried_up_.at(time, camera);
     return camera;
@@ -151,6 +189,48 @@ render::CameraDescription CameraPath::keyed_at(double time) const {
     camera.fourth = value_at<Sphere>(fourth_, still_.fourth, time);
     camera.field_of_view = value_at<Flat>(field_of_view_, still_.field_of_view, time);
     return camera;
+}
+
+namespace {
+
+/// What the last key must say as the first does is as near to it as this, relative.
+constexpr double kSameEnd = 1e-9;
+
+bool ends_alike(const Vec4& a, const Vec4& b) {
+    return (a - b).norm() <= kSameEnd * (1 + a.norm());
+}
+bool ends_alike(double a, double b) { return std::abs(a - b) <= kSameEnd * (1 + std::abs(a)); }
+
+template <class T>
+std::string difference_of_ends(const char* part, const std::optional<T>& first,
+                               const std::optional<T>& last) {
+    if (!first || !last || ends_alike(*first, *last)) return {};
+    return fmt::format(
+        "the path ends with the {0} {1} and begins with {2}; expected a last [[camera.key]] that "
+        "has the {0} of the first",
+        part, toml_text(*last), toml_text(*first));
+}
+
+}  // namespace
+
+std::string open_ends(const render::CameraDescription& still, std::span<const CameraKey> keys) {
+    if (keys.size() < 2)
+        return "the path goes through its keys and back to the first; expected two [[camera.key]] "
+               "or more, the last as the first";
+    const CameraKey &first = keys.front(), &last = keys.back();
+    if (first.orbit)
+        return "the first [[camera.key]] is an orbit; expected one with the position where the "
+               "path begins and ends";
+    std::optional<Vec4> end = last.position;
+    if (last.orbit) end = CameraPath(still, keys).at(last.time).position;
+    for (const std::string& what :
+         {difference_of_ends("position", first.position, end),
+          difference_of_ends("look_at", first.look_at, last.look_at),
+          difference_of_ends("up", first.up, last.up),
+          difference_of_ends("fourth", first.fourth, last.fourth),
+          difference_of_ends("field_of_view", first.field_of_view, last.field_of_view)})
+        if (!what.empty()) return what;
+    return {};
 }
 
 }  // namespace tesserae::scenes

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/description.hpp"
@@ -31,7 +32,10 @@ struct CameraKey {
 /// Where the view comes near to looking along `up`, see CarriedUp.
 class CameraPath {
   public:
-    CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys);
+    /// @param closed   the path goes on round: after the last key, which must be as the first is
+    ///                 (see open_ends()), comes the first, and each part goes smoothly through it
+    CameraPath(const render::CameraDescription& still, std::span<const CameraKey> keys,
+               bool closed = false);
 
     /// In a time that grows with the logarithm of the number of keys.
     /// @param time   [s]
@@ -58,6 +62,11 @@ class CameraPath {
     static T value_at(const Knots<T>& knots, const T& still, double time);
 
     void add_positions(std::span<const CameraKey> keys);
+    /// Repeats knots before the first key and after the last.
+    template <class T>
+    void close(Knots<T>& knots) const;
+    /// A time between the first key and the last.
+    double wrapped(double time) const;
     Vec4 position_at(double time) const;
     /// As the keys say, without the law of CarriedUp.
     render::CameraDescription keyed_at(double time) const;
@@ -68,8 +77,12 @@ class CameraPath {
     render::CameraDescription still_;
     Knots<Vec4> position_, look_at_, up_, fourth_;
     Knots<double> field_of_view_;
-    std::vector<CameraArc> arcs_;  ///< ascending in time
+    std::vector<CameraArc> arcs_;    ///< ascending in time
+    double first_ = 0, period_ = 0;  ///< of a closed path, else 0 [s]
     CarriedUp carried_up_;
 };
+
+/// What keeps a path through these keys from being closed, in words; empty: nothing.
+std::string open_ends(const render::CameraDescription& still, std::span<const CameraKey> keys);
 
 }  // namespace tesserae::scenes

@@ -9,6 +9,7 @@
 #include "core/dynamics/state/bodies.hpp"
 #include "core/dynamics/state/settings.hpp"
 #include "render/description.hpp"
+#include "scenes/camera_motion.hpp"
 #include "scenes/camera_path.hpp"
 #include "scenes/named_bodies.hpp"
 #include "scenes/overlay/overlay.hpp"
@@ -26,6 +27,7 @@ struct Scene {
     std::vector<render::Material> materials;
     render::CameraDescription camera;    ///< where no key moves it
     std::vector<CameraKey> camera_keys;  ///< ascending in time
+    CameraMotion camera_motion;
     render::Lights lights;
     render::Settings render;
     bool gives_ghost_depth = false;  ///< also where that is 0; if not, a draft has ghosts
@@ -38,7 +40,7 @@ struct Scene {
     std::string hash;       ///< 32 hex digits of `effective`
     std::string motion_hash;  ///< of a trajectory that this program makes of it
 
-    CameraPath camera_path() const { return CameraPath(camera, camera_keys); }
+    CameraPath camera_path() const { return CameraPath(camera, camera_keys, camera_motion.closed); }
 };
 
 }  // namespace tesserae::scenes

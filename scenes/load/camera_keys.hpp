@@ -15,6 +15,14 @@ constexpr std::string_view kEases[] = {"linear", "in", "out", "in-out"};
 /// A thousand turns [degrees].
 constexpr double kMostAngle = 360'000;
 
+/// [camera]: how it moves beside its keys
+void camera_motion_keys(auto& self, const auto& visit) {
+    visit({"closed", "",
+           "The path of the keys goes on round: the last is as the first, and the camera passes it "
+           "without a kink."},
+          self.closed, FalseOrUnwritten{});
+}
+
 /// orbit = { ... } of a [[camera.key]]
 void orbit_keys(auto& self, const auto& visit) {
     visit({"about", "m", "The camera goes round this point."}, self.about,

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "core/error.hpp"
 #include "render/camera/camera.hpp"
 #include "scenes/load/load_parts.hpp"
@@ -87,23 +91,51 @@ void load_camera(TableReader& root, const Origin& origin, Scene& scene, Effectiv
     const auto* table = root.table("camera");
     if (table == nullptr) {
         camera_keys(camera, write);
+        camera_motion_keys(scene.camera_motion, write);
         return;
     }
     TableReader reader(*table, origin, "[camera]");
     camera_keys(camera, ReadKeys{reader});
+    camera_motion_keys(scene.camera_motion, ReadKeys{reader});
     if (reader.has("slices") && camera.slices > 1 && camera.slice_thickness == 0)
         reader.collect([&] {
             reader.fail("slices", "expected a slice_thickness over which they are spread");
         });
     camera_keys(camera, write);
+    camera_motion_keys(scene.camera_motion, write);
     load_keys(reader, origin, scene, out);
+    if (scene.camera_motion.closed && !reader.has_errors())
+        reader.collect([&] {
+            const std::string open = open_ends(camera, scene.camera_keys);
+            if (!open.empty()) reader.fail("closed", open);
+        });
     reader.finish();
     if (scene.camera_keys.empty()) require_frame(reader, camera);
 }
 
+namespace {
+
+/// That a closed path comes back with its picture upright, see CarriedUp.
+void require_same_up(const CameraPath& path, double begin, double end, const Origin& origin) {
+    constexpr double kSameUp = 1e-6;
+    const Vec4 first = path.at(begin).up, last = path.at(end).up;
+    if ((first - last).norm() <= kSameUp) return;
+    throw InputError(fmt::format(
+        "{}: [camera]: closed = true: the picture is turned by {:.3g} degrees when the path comes "
+        "back, since it looked straight along `up` on its way; expected a path that swings back "
+        "too, or keys of up",
+        origin.place,
+        2 * std::asin(std::min(1.0, 0.5 * (first - last).norm())) * 180 / std::numbers::pi));
+}
+
+}  // namespace
+
 void require_view(const Scene& scene, const Origin& origin) {
     if (scene.camera_keys.empty()) return;
     const CameraPath path = scene.camera_path();
+    if (scene.camera_motion.closed)
+        require_same_up(path, scene.camera_keys.front().time, scene.camera_keys.back().time,
+                        origin);
     for (int frame = 0, count = frame_count(scene); frame < count; ++frame) {
         const double time = frame_instant(scene, frame).time;
         try {

@@ -231,6 +231,7 @@ std::vector<Table> all_tables() {
     const render::CameraDescription camera;
     const CameraKey key;
     const CameraOrbit orbit;
+    const CameraMotion motion;
     const render::Settings settings;
     const Overlay overlay;
     const Caption caption;
@@ -258,7 +259,9 @@ std::vector<Table> all_tables() {
         {"camera",
          "[camera]",
          "Where the camera is and what slice it sees.",
-         {part_of("", [&](Visit visit) { camera_keys(camera, visit); })}},
+         {part_of(
+             "",
+             [&](Visit visit) { camera_keys(camera, visit), camera_motion_keys(motion, visit); })}},
         {"camera.key",
          "[[camera.key]]",
          "What the camera is like at a time; it moves smoothly from key to key. Each has at least "

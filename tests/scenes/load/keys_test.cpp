@@ -181,8 +181,17 @@ TEST(Keys, OfTheFilmAreReadAndWritten) {
                        [&](const auto& visit) { scene_keys(scene, visit); });
     expect_all_written({"[physics]", 0, set_in("physics")},
                        [&](const auto& visit) { physics_keys(*scene.physics, visit); });
-    expect_all_written({"[camera]", 0, set_in("camera"), {}, {"key"}},
-                       [&](const auto& visit) { camera_keys(scene.camera, visit); });
+    expect_all_written({"[camera]",
+                        0,
+                        set_in("camera"),
+                        {{"closed",
+                          "camera.key=[{ time = 0, position = [0, 2, -8, 0] }, { time = 1, "
+                          "position = [0, 2, -8, 0] }]"}},
+                        {"key"}},
+                       [&](const auto& visit) {
+                           camera_keys(scene.camera, visit);
+                           camera_motion_keys(scene.camera_motion, visit);
+                       });
     expect_all_written({"[render]", 0, set_in("render")}, [&](const auto& visit) {
         frame_keys(scene.render, visit), pixel_keys(scene.render, visit);
         ray_keys(scene.render, visit), ghost_keys(scene.render, visit);
