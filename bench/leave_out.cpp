@@ -215,7 +215,8 @@ Work program_of(const scenes::Scene& scene, bool films, const fs::path& folder) 
     const scenes::Plan plan = scenes::make_plan(scene, 1);
     const fs::path trajectory = folder / "trajectory.h5";
     const auto simulate = [=] {
-        if (plan.moves) scenes::simulate(scene, plan, trajectory, 0, true, true);
+        if (plan.moves)
+            scenes::simulate(scene, plan, trajectory, {.overwrite = true, .quiet = true});
     };
     if (!films)
         return [=] {

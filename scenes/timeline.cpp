@@ -133,6 +133,11 @@ std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<in
     return steps;
 }
 
+std::uint64_t last_step_needed(const Scene& scene, const std::vector<int>& frames) {
+    const std::vector<std::uint64_t> steps = steps_needed(scene, frames);
+    return steps.empty() ? 0 : steps.back();
+}
+
 std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames) {
     std::vector<std::uint64_t> steps = steps_needed(scene, frames);
     for (int frame : frames) {

@@ -39,7 +39,10 @@ std::vector<std::uint64_t> shutter_steps(const Scene& scene, int frame);
 /// those of the frames before and after as well.
 std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<int>& frames);
 
-/// The same with their shutter_steps().
+/// The last of them: what a simulation takes steps to where no other frames are asked for.
+std::uint64_t last_step_needed(const Scene& scene, const std::vector<int>& frames);
+
+/// The same as steps_needed() with their shutter_steps().
 std::vector<std::uint64_t> steps_for_frames(const Scene& scene, const std::vector<int>& frames);
 
 /// Ranges "a-b", "a-bxs" and single numbers, separated by commas, in ascending order without

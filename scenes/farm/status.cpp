@@ -13,6 +13,7 @@
 #include "scenes/farm/scripts.hpp"
 #include "scenes/farm/submit.hpp"
 #include "scenes/film/film_folder.hpp"
+#include "scenes/film/simulate.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
 #include "scenes/process/progress.hpp"
@@ -93,8 +94,14 @@ std::optional<double> rate_of(std::vector<fs::file_time_type> times) {
     return 1 / apart;
 }
 
+/// Whether simulating has still to make or to continue the trajectory.
+bool lacks_steps(const Scene& scene, const fs::path& trajectory, const std::vector<int>& frames) {
+    const Served served = how_served(scene, trajectory, 0, frames);
+    return served == Served::kByNothing || served == Served::kByBeginning;
+}
+
 /// The command that makes the rest on this machine.
-std::string finishing_command(const FilmStatus& status, const fs::path& folder,
+std::string finishing_command(const FilmStatus& status, const Scene& scene, const fs::path& folder,
                               const fs::path& scene_file, bool moves) {
     const auto word = [](const fs::path& path) { return shell_word(path.string()); };
     std::vector<int> frames = status.missing;
@@ -103,7 +110,7 @@ std::string finishing_command(const FilmStatus& status, const fs::path& folder,
     std::sort(frames.begin(), frames.end());
     const fs::path trajectory = folder / "trajectory.h5";
     std::string text;
-    if (moves && !fs::exists(trajectory))
+    if (moves && lacks_steps(scene, trajectory, frames))
         text = fmt::format("tesserae simulate {} -o {} && ", word(scene_file), word(trajectory));
     text += fmt::format("tesserae render {}", word(scene_file));
     if (moves) text += fmt::format(" --trajectory {}", word(trajectory));
@@ -153,7 +160,7 @@ FilmStatus film_status(const fs::path& folder) {
     const auto left =
         static_cast<double>(status.missing.size() + status.other.size() + status.invalid.size());
     if (status.frames_per_second) status.seconds_left = left / *status.frames_per_second;
-    status.command = finishing_command(status, folder, scene_file, moves);
+    status.command = finishing_command(status, scene, folder, scene_file, moves);
     if (fs::exists(folder / "submit" / "submit.sh"))
         status.submit = "bash " + shell_word((folder / "submit" / "submit.sh").string());
     return status;

@@ -28,13 +28,23 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
                                      header.bodies, scene.bodies.size()));
     for (std::uint64_t step : steps_needed(scene, frames))
         if (row_of(step) == trajectory_->rows())
-            throw InputError(fmt::format(
-                "{}: step {} is not stored, but the frames asked for need it{}",
-                trajectory.string(), step,
-                scene.camera.shutter > 0
-                    ? ", as an open camera.shutter may; tesserae run simulates again for it"
-                    : "; simulate without --store-every, or to the end"));
+            throw InputError(
+                fmt::format("{}: step {} is not stored, but the frames asked for need it{}",
+                            trajectory.string(), step, remedy(scene, step)));
     after_ = scene.bodies;
+}
+
+std::string Poses::remedy(const Scene& scene, std::uint64_t step) const {
+    const TrajectoryHeader& header = trajectory_->header();
+    const auto& steps = trajectory_->steps();
+    if (!steps.empty() && steps.back() < step && header.last_step &&
+        steps.back() < *header.last_step)
+        return fmt::format(
+            ": it ends at step {} of {}; the command that made it, without --frames, continues it",
+            steps.back(), *header.last_step);
+    return scene.camera.shutter > 0
+               ? ", as an open camera.shutter may; tesserae run simulates again for it"
+               : "; simulate without --store-every, or to the end";
 }
 
 std::uint64_t Poses::row_of(std::uint64_t step) const {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scenes/scene.hpp"
@@ -31,6 +32,8 @@ class Poses {
     int motion_version() const;
 
   private:
+    /// What to do about a step that is not stored.
+    std::string remedy(const Scene& scene, std::uint64_t step) const;
     std::uint64_t row_of(std::uint64_t step) const;
 
     std::unique_ptr<TrajectoryReader> trajectory_;

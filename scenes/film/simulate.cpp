@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
@@ -20,9 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every, const char* creator) {
+TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
+                           std::uint64_t last_step) {
     TrajectoryHeader header;
-    header.creator = creator;
+    header.creator = options.creator;
     header.scene_name = scene.name;
     header.source = scene.source;
     header.effective = scene.effective;
@@ -31,7 +33,8 @@ TrajectoryHeader header_of(const Scene& scene, std::uint64_t store_every, const 
     header.program_version = TESSERAE_VERSION;
     header.bodies = scene.bodies.size();
     header.steps_per_second = scene.physics ? scene.physics->steps_per_second : 1;
-    header.store_every = store_every;
+    header.store_every = options.store_every;
+    header.last_step = last_step;
     header.motion_version = kMotionVersion;
     header.described = {scene.bodies.types, scene.bodies.type, scene.names};
     return header;
@@ -98,10 +101,10 @@ class SlowSteps {
     bool told_;
 };
 
-/// Stores the rows that are missing. Every row holds a state and what the step that led to it
-/// found; the first, before any step, found nothing.
+/// Stores the rows that are missing of those wanted. Every row holds a state and what the step that
+/// led to it found; the first, before any step, found nothing.
 void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
-                const std::vector<std::uint64_t>& steps, SimulateReport& report, bool quiet,
+                std::span<const std::uint64_t> steps, SimulateReport& report, bool quiet,
                 parallel::Trace* trace) {
     Bodies start = scene.bodies;
     std::uint64_t step = 0;
@@ -120,7 +123,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     }
     const Bodies& bodies = world ? world->bodies() : start;
 
-    Progress progress("simulating", "steps", steps.back(), quiet);
+    Progress progress("simulating", "steps", std::max(step, steps.back()), quiet);
     progress.start_at(step);
     SlowSteps slow(scene, quiet);
     StepReport found;
@@ -139,6 +142,24 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
                       world ? world->memory() : memory);
     }
     report.last_step = step;
+    report.rows = writer.rows();
+}
+
+/// How many of a scene's stored steps frames need, with those before them.
+std::size_t rows_to(const Scene& scene, const std::vector<std::uint64_t>& steps,
+                    const std::vector<int>& frames) {
+    if (frames.empty()) return steps.size();
+    const std::uint64_t last = last_step_needed(scene, frames);
+    return static_cast<std::size_t>(std::upper_bound(steps.begin(), steps.end(), last) -
+                                    steps.begin());
+}
+
+/// How many of a scene's stored steps are as far as a trajectory of its motion goes.
+std::size_t rows_as_far_as(const fs::path& file, const std::vector<std::uint64_t>& steps) {
+    const TrajectoryReader there(file);
+    if (there.rows() == 0) return 0;
+    const auto after = std::lower_bound(steps.begin(), steps.end(), there.steps().back());
+    return std::min(steps.size(), static_cast<std::size_t>(after - steps.begin()) + 1);
 }
 
 }  // namespace
@@ -154,7 +175,8 @@ std::vector<std::uint64_t> stored_steps(const Scene& scene, std::uint64_t store_
     return steps;
 }
 
-Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_every) {
+Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_every,
+                  const std::vector<int>& frames) {
     if (!fs::exists(file)) return Served::kByNothing;
     std::optional<TrajectoryReader> there;
     try {
@@ -167,13 +189,24 @@ Served how_served(const Scene& scene, const fs::path& file, std::uint64_t store_
         return Served::kByOther;
     const std::vector<std::uint64_t>& stored = there->steps();
     const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
-    if (stored == steps) return Served::kWhole;
-    if (std::includes(stored.begin(), stored.end(), steps.begin(), steps.end()))
+    const auto wanted = static_cast<std::ptrdiff_t>(rows_to(scene, steps, frames));
+    const bool is_beginning =
+        stored.size() <= steps.size() && std::equal(stored.begin(), stored.end(), steps.begin());
+    if (is_beginning && std::ssize(stored) >= wanted) return Served::kWhole;
+    if (std::includes(stored.begin(), stored.end(), steps.begin(), steps.begin() + wanted))
         return Served::kByMore;
-    const bool is_beginning = there->header().store_every == store_every &&
-                              stored.size() < steps.size() &&
-                              std::equal(stored.begin(), stored.end(), steps.begin());
-    return is_beginning ? Served::kByBeginning : Served::kByOtherSteps;
+    return is_beginning && there->header().store_every == store_every ? Served::kByBeginning
+                                                                      : Served::kByOtherSteps;
+}
+
+SimulateReport report_of_kept(const Scene& scene, const fs::path& file, std::uint64_t store_every) {
+    const TrajectoryReader there(file);
+    SimulateReport report;
+    report.kept = true;
+    report.rows = there.rows();
+    report.first_step = report.last_step = there.steps().back();
+    report.steps = stored_steps(scene, store_every).back();
+    return report;
 }
 
 bool is_made_by(const fs::path& file, const char* creator) {
@@ -186,19 +219,22 @@ bool is_made_by(const fs::path& file, const char* creator) {
 }
 
 SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& file,
-                        std::uint64_t store_every, bool overwrite, bool quiet,
-                        parallel::Trace* trace, const char* creator) {
+                        const SimulateOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
-    const std::vector<std::uint64_t> steps = stored_steps(scene, store_every);
+    const Served served = how_served(scene, file, options.store_every, options.frames);
+    if (served == Served::kWhole) return report_of_kept(scene, file, options.store_every);
+    const std::vector<std::uint64_t> steps = stored_steps(scene, options.store_every);
+    std::size_t count = rows_to(scene, steps, options.frames);
+    if (served == Served::kByMore || served == Served::kByOtherSteps)
+        count = std::max(count, rows_as_far_as(file, steps));
     SimulateReport report;
-    report.rows = steps.size();
-    report.first_step = report.last_step = steps.back();
-    if (how_served(scene, file, store_every) != Served::kWhole) {
-        TrajectoryWriter writer(file, header_of(scene, store_every, creator), steps, overwrite);
-        if (!writer.note().empty()) tell(writer.note());
-        store_rows(scene, plan, writer, steps, report, quiet, trace);
-        writer.finish();
-    }
+    report.steps = steps.back();
+    TrajectoryWriter writer(file, header_of(scene, options, steps.back()), steps,
+                            options.overwrite);
+    if (!writer.note().empty()) tell(writer.note());
+    store_rows(scene, plan, writer, std::span(steps).first(count), report, options.quiet,
+               options.trace);
+    writer.finish();
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return report;

@@ -133,7 +133,8 @@ Cost measure_cost(const Scene& scene, const Plan& plan, const fs::path& trajecto
     std::vector<TimedBodies> poses;
     const auto begin = std::chrono::steady_clock::now();
     if (trajectory.empty()) {
-        Rehearsal rehearsal = rehearse(scene, plan, kSimulating * seconds);
+        Rehearsal rehearsal =
+            rehearse(scene, plan, last_step_needed(scene, frames), kSimulating * seconds);
         if (rehearsal.steps > 0) {
             cost.simulate_seconds = rehearsal.seconds + kFileSeconds;
             cost.measured.push_back(

@@ -31,7 +31,7 @@ double measuring_seconds(const Scene& scene);
 /// Simulates and renders for about `seconds` in memory and in a temporary folder. Runs on the
 /// threads of the caller's parallel::Threads.
 /// @param trajectory   where the bodies will be, if it is known; else empty
-/// @param frames       that will be rendered
+/// @param frames       that will be rendered; steps are counted to the last of them
 /// @throws InputError   as Poses; RunError a body left the finite range
 Cost measure_cost(const Scene& scene, const Plan& plan, const std::filesystem::path& trajectory,
                   const std::vector<int>& frames, double seconds);

@@ -164,6 +164,15 @@ std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads
     return bytes;
 }
 
+/// Of the steps of the first frames of a scene.
+std::uint64_t trajectory_bytes(const Scene& scene, const Plan& plan, int frames) {
+    if (!plan.moves) return 0;
+    // A frame lies between two stored steps, its shutter over some more.
+    return plan.bodies * ((2 + shutter_steps(scene, 0).size()) *
+                              static_cast<std::uint64_t>(frames) * kStateBytes +
+                          description_bytes({scene.bodies.types, scene.bodies.type, scene.names}));
+}
+
 std::string memory_text(std::uint64_t bytes) {
     const double megabytes = 1e-6 * static_cast<double>(bytes);
     return megabytes < 1000 ? fmt::format("{:.1f} MB", megabytes)
@@ -195,15 +204,16 @@ Plan make_plan(const Scene& scene, int threads) {
     if (plan.moves)
         plan.checkpoint_bytes =
             spheres * kSphereCheckpointBytes + (plan.movable_bodies - spheres) * kCheckpointBytes;
-    // A frame lies between two stored steps, its shutter over some more.
-    if (plan.moves)
-        plan.trajectory_bytes =
-            plan.bodies * ((2 + shutter_steps(scene, 0).size()) * plan.frames * kStateBytes +
-                           description_bytes({scene.bodies.types, scene.bodies.type, scene.names}));
+    plan.trajectory_bytes = trajectory_bytes(scene, plan, plan.frames);
 
     decide_physics(scene, plan);
     decide_picture(scene, plan);
     return plan;
+}
+
+void narrow_to(Plan& plan, const Scene& scene, const std::vector<int>& frames) {
+    plan.view_rays = plan.view_rays / static_cast<std::uint64_t>(plan.frames) * frames.size();
+    plan.trajectory_bytes = trajectory_bytes(scene, plan, frames.back() + 1);
 }
 
 void require_memory(const Plan& plan, const Scene& scene) {

@@ -29,8 +29,8 @@ struct Plan {
     bool moves = false;  ///< some body changes its pose: steps are taken
 
     std::uint64_t bodies = 0, movable_bodies = 0;
-    std::uint64_t steps = 0;  ///< time steps of the whole scene
-    int frames = 0;
+    std::uint64_t steps = 0;             ///< time steps of the whole scene
+    int frames = 0;                      ///< of the whole scene
     std::uint64_t view_rays = 0;         ///< of all frames, at most
     std::uint64_t memory_bytes = 0;      ///< estimated peak, program and libraries included
     std::uint64_t trajectory_bytes = 0;  ///< before compression, steps of all frames
@@ -38,6 +38,10 @@ struct Plan {
 };
 
 Plan make_plan(const Scene& scene, int threads);
+
+/// Leaves of a plan's counts what the given frames need.
+/// @param frames   ascending, at least one
+void narrow_to(Plan& plan, const Scene& scene, const std::vector<int>& frames);
 
 /// @throws InputError   the plan needs more memory than the machine or the cgroup has left
 void require_memory(const Plan& plan, const Scene& scene);

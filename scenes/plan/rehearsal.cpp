@@ -76,9 +76,9 @@ double contacts_at_rest(const Scene& scene, const std::vector<StepCost>& seen) {
 
 }  // namespace
 
-Rehearsal rehearse(const Scene& scene, const Plan& plan, double seconds) {
+Rehearsal rehearse(const Scene& scene, const Plan& plan, std::uint64_t steps, double seconds) {
     Rehearsal rehearsal;
-    rehearsal.steps = plan.moves ? plan.steps : 0;
+    rehearsal.steps = plan.moves ? steps : 0;
     rehearsal.poses.push_back({0, scene.bodies});
     if (rehearsal.steps == 0) return rehearsal;
     const std::size_t most_poses =

@@ -26,6 +26,7 @@ struct Rehearsal {
 
 /// Simulates for about `seconds`, one step at least, on the threads of the caller's
 /// parallel::Threads.
-Rehearsal rehearse(const Scene& scene, const Plan& plan, double seconds);
+/// @param steps   that all of them are, where something moves
+Rehearsal rehearse(const Scene& scene, const Plan& plan, std::uint64_t steps, double seconds);
 
 }  // namespace tesserae::scenes

@@ -72,8 +72,14 @@ void add_output(CLI::App& app, CommandLine& line, const char* what) {
     app.add_flag("--overwrite", line.overwrite, "replace results of another scene");
 }
 
+void add_frames(CLI::App& app, CommandLine& line, const char* what) {
+    app.add_option("--frames", line.frames, what);
+}
+
+constexpr const char* kFrames = "for example 0-239x2,300 (default: all)";
+
 void add_picture(CLI::App& app, CommandLine& line, Typed& typed) {
-    app.add_option("--frames", line.frames, "for example 0-239x2,300 (default: all)");
+    add_frames(app, line, kFrames);
     app.add_option("--size", typed.size, "WIDTHxHEIGHT, instead of the scene's");
     app.add_option("--samples", typed.samples, "a pixel, instead of the scene's");
     app.add_option("--crop", typed.crop, "x0,y0,x1,y1: pixels from the top left, half open");
@@ -103,6 +109,7 @@ void add_view(CLI::App& app, CommandLine& line) {
     view.add_option("--set", line.sets, "one scene key, for example render.frames_per_second=12")
         ->allow_extra_args(false);
     add_output(view, line, "the page: FILE.html");
+    add_frames(view, line, "that the page shows, for example 0 or 0-239x2 (default: all)");
     view.add_option("--near-slice", line.near_slice,
                     "leave out bodies that never come as near as this to the film's slice [m]")
         ->check(CLI::NonNegativeNumber);
@@ -145,7 +152,7 @@ void add_tools(CLI::App& app, CommandLine& line) {
         ->required()
         ->check(CLI::IsMember({"ply", "vtk"}));
     add_output(exported, line, "folder for the meshes and the camera's path");
-    exported.add_option("--frames", line.frames, "for example 0-239x2,300 (default: all)");
+    add_frames(exported, line, kFrames);
     exported
         .add_option("--tolerance", line.tolerance,
                     "how far a round body's mesh may be from its surface [m] (default: a "
@@ -299,6 +306,8 @@ void add_commands(CLI::App& app, CommandLine& line, Typed& typed) {
     CLI::App& simulate = *app.add_subcommand("simulate", "move the bodies, store a trajectory");
     add_scene(simulate, line);
     add_output(simulate, line, "trajectory file (HDF5)");
+    add_frames(simulate, line,
+               "to the last of these, for example 0-9 (default: to the last of all)");
     add_simulation(simulate, line);
 
     CLI::App& render = *app.add_subcommand("render", "frames of a still, or of a trajectory");
@@ -319,6 +328,7 @@ void add_commands(CLI::App& app, CommandLine& line, Typed& typed) {
     CLI::App& plan =
         *app.add_subcommand("plan", "what a scene needs, what is left out, what it costs");
     add_scene(plan, line);
+    add_frames(plan, line, kFrames);
     plan.add_option("--trajectory", line.trajectory,
                     "made by tesserae simulate: tells when bodies are in the picture");
 

@@ -8,7 +8,6 @@
 
 #include "core/error.hpp"
 #include "parallel/threads.hpp"
-#include "scenes/film/simulate.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/load/reference.hpp"
 #include "scenes/plan/cost.hpp"
@@ -61,11 +60,16 @@ std::string gigabytes(auto bytes) {
     return fmt::format("{:.2f} GB", 1e-9 * static_cast<double>(bytes));
 }
 
-void print_plan(const Plan& plan, const Cost& cost, std::uint64_t taken) {
+/// @param frames   that are asked for
+/// @param taken    steps to the last of them
+void print_plan(const Plan& plan, const Cost& cost, std::size_t frames, std::uint64_t taken) {
+    const bool is_part = frames < static_cast<std::size_t>(plan.frames);
     put_line("bodies      {} ({} movable)", plan.bodies, plan.movable_bodies);
     put_line("steps       {}{}", plan.steps,
-             plan.moves && taken < plan.steps ? fmt::format(" ({} to the last frame)", taken) : "");
-    put_line("frames      {}", plan.frames);
+             plan.moves && taken < plan.steps
+                 ? fmt::format(" ({} to the last frame{})", taken, is_part ? " of these" : "")
+                 : "");
+    put_line("frames      {}{}", plan.frames, is_part ? fmt::format(", {} of them", frames) : "");
     put_line("view rays   {}", plan.view_rays);
     const char* const rough = cost.is_rough() ? ", roughly" : "";
     if (plan.moves) put_line("simulating  about {}{}", duration_text(cost.simulate_seconds), rough);
@@ -95,7 +99,8 @@ void plan_command(const CommandLine& line) {
     Work work(line);
     count_off_slice(work.scene, work.plan);
     warn_of_hidden_glass(work.scene, work.plan);
-    const std::vector<int> frames = parse_frames("", work.plan.frames);
+    const std::vector<int> frames = parse_frames(line.frames, work.plan.frames);
+    narrow_to(work.plan, work.scene, frames);
     Cost cost;
     std::optional<SliceReport> slice;
     parallel::Threads(line.threads).run([&] {
@@ -108,13 +113,14 @@ void plan_command(const CommandLine& line) {
         for (std::string& warning : slice->warnings)
             work.plan.warnings.push_back(std::move(warning));
     });
-    const std::uint64_t taken = stored_steps(work.scene, 0).back();
+    const std::uint64_t taken = last_step_needed(work.scene, frames);
     if (!line.json) {
-        print_plan(work.plan, cost, taken);
+        print_plan(work.plan, cost, frames.size(), taken);
         if (slice) print_names(*slice);
         return;
     }
     Json json = to_json(work.plan);
+    json["frames_asked"] = frames.size();
     json["steps_to_last_frame"] = taken;
     json["simulate_seconds"] = cost.simulate_seconds;
     json["render_seconds"] = cost.render_seconds;

@@ -31,6 +31,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(const SimulateReport& r) {
     return {{"first_step", r.first_step},
             {"last_step", r.last_step},
+            {"steps_to_last_frame", r.steps},
             {"rows", r.rows},
             {"seconds", r.seconds}};
 }
@@ -57,9 +58,14 @@ Json to_json(const MovieReport& r) {
 }
 
 std::string simulated_text(const SimulateReport& r, const fs::path& file) {
-    if (r.first_step == r.last_step) return fmt::format("{}: complete already", file.string());
-    return fmt::format("{}: steps {} to {}, {} stored, {}", file.string(), r.first_step,
-                       r.last_step, r.rows, duration_text(r.seconds));
+    const bool ends_early = r.last_step < r.steps;
+    if (r.kept)
+        return ends_early ? fmt::format("{}: goes to step {} of {}, which is enough", file.string(),
+                                        r.last_step, r.steps)
+                          : fmt::format("{}: complete already", file.string());
+    return fmt::format("{}: steps {} to {}{}, {} stored, {}", file.string(), r.first_step,
+                       r.last_step, ends_early ? fmt::format(" of {}", r.steps) : "", r.rows,
+                       duration_text(r.seconds));
 }
 
 std::string filmed_text(const FilmReport& r) {
@@ -79,8 +85,9 @@ std::string movie_text(const MovieReport& r) {
 constexpr const char* kDraftCreator = "tesserae run --draft";
 
 /// simulate(), and the trace of it where one is asked for.
+/// @param frames   to the last of which; empty: to the scene's last
 SimulateReport traced_simulate(const CommandLine& line, const Work& work, const fs::path& file,
-                               bool overwrite) {
+                               std::vector<int> frames, bool overwrite) {
     std::optional<parallel::Trace> trace;
     if (!line.trace.empty()) {
         trace.emplace();
@@ -88,8 +95,9 @@ SimulateReport traced_simulate(const CommandLine& line, const Work& work, const 
         write_file(line.trace, trace->json());
     }
     const SimulateReport report =
-        simulate(work.scene, work.plan, file, line.store_every, overwrite, line.quiet,
-                 trace ? &*trace : nullptr, line.draft ? kDraftCreator : "tesserae");
+        simulate(work.scene, work.plan, file,
+                 {line.store_every, std::move(frames), overwrite, line.quiet,
+                  trace ? &*trace : nullptr, line.draft ? kDraftCreator : "tesserae"});
     if (trace) write_file(line.trace, trace->json());
     return report;
 }
@@ -231,23 +239,32 @@ class Filming {
             tell(fmt::format("warning: {}", warning));
     }
 
+    /// Those that were asked for by their numbers; empty: all. Also a draft's trajectory is that of
+    /// all frames.
+    std::vector<int> frames_by_number() const {
+        return line_.frames.empty() ? std::vector<int>() : frames_;
+    }
+
     /// What is there serves where it can. A draft shares the trajectory with the film.
     std::string simulated(Json& json) {
         create_folder(folder_);
         trajectory_ = line_.output / "trajectory.h5";
-        const Served served = how_served(scene(), trajectory_, line_.store_every);
+        const Served served =
+            how_served(scene(), trajectory_, line_.store_every, frames_by_number());
         require_no_film(served);
         const std::string file = trajectory_.string();
         SimulateReport report;
         std::string text;
-        if (is_run_ && served == Served::kByMore) {
+        if (served == Served::kByMore) {
+            report = report_of_kept(scene(), trajectory_, line_.store_every);
             text = fmt::format("{}: kept", file);
         } else {
             // Of the same motion nothing is lost.
             const bool anew = is_run_ && served == Served::kByOtherSteps;
             if (anew)
                 tell(fmt::format("{}: lacks steps that the frames need: simulated again", file));
-            report = traced_simulate(line_, work_, trajectory_, anew || may_replace_trajectory());
+            report = traced_simulate(line_, work_, trajectory_, frames_by_number(),
+                                     anew || may_replace_trajectory());
             text = simulated_text(report, trajectory_);
         }
         json = to_json(report);
@@ -292,12 +309,13 @@ class Filming {
 
 void simulate_command(const CommandLine& line) {
     const Work work(line);
+    const std::vector<int> frames = asked_frames(line, work.scene);
     require_memory(work.plan, work.scene);
     create_folder_of(line.output);
     stop_gracefully_on_signals();
     SimulateReport report;
     parallel::Threads(line.threads).run([&] {
-        report = traced_simulate(line, work, line.output, line.overwrite);
+        report = traced_simulate(line, work, line.output, frames, line.overwrite);
     });
     Json json = to_json(report);
     json["trajectory"] = line.output.string();

@@ -174,6 +174,16 @@ Facts trajectory_facts(const std::filesystem::path& file) {
                     fmt::format("{}", header.steps_per_second)},
                    count("rows", trajectory.rows())};
     if (trajectory.rows() == 0) return facts;
+    if (header.last_step) {
+        const std::uint64_t last = trajectory.steps().back();
+        const bool ends_early = last < *header.last_step;
+        facts.push_back({"complete", !ends_early,
+                         ends_early
+                             ? fmt::format("no: ends at step {} of {}; the command that made "
+                                           "it, without --frames, continues it",
+                                           last, *header.last_step)
+                             : "yes"});
+    }
     append_diagnostics(facts, trajectory.facts());
     return facts;
 }

@@ -31,21 +31,25 @@ void view_command(const CommandLine& line) {
     const bool is_trajectory = kind_of(line.file) == FileKind::kTrajectory;
     const Scene scene = viewed_scene(line, is_trajectory);
     const Plan plan = make_plan(scene, line.threads);
+    ViewOptions options;
+    options.frames = asked_frames(line, scene);
+    options.near_slice = line.near_slice;
+    options.quiet = line.quiet;
     require_page(line.output, line.overwrite);
     require_memory(plan, scene);
     create_folder_of(line.output);
     stop_gracefully_on_signals();
 
     fs::path trajectory = is_trajectory ? line.file : fs::path();
-    ViewOptions options;
-    options.near_slice = line.near_slice;
-    options.quiet = line.quiet;
     ViewReport report;
     parallel::Threads(line.threads).run([&] {
         if (!is_trajectory && plan.moves) {
             trajectory = fs::path(line.output).replace_extension(".h5");
-            simulate(scene, plan, trajectory, 0, line.overwrite || is_made_by(trajectory, kCreator),
-                     line.quiet, nullptr, kCreator);
+            // One that holds more serves as well.
+            if (how_served(scene, trajectory, 0, options.frames) != Served::kByMore)
+                simulate(scene, plan, trajectory,
+                         {0, options.frames, line.overwrite || is_made_by(trajectory, kCreator),
+                          line.quiet, nullptr, kCreator});
         }
         report = write_view(scene, trajectory, line.output, options);
     });

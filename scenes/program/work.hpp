@@ -3,10 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
 #include "scenes/program/command_line.hpp"
+#include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
 
@@ -19,6 +21,12 @@ struct Work {
     Scene scene;
     Plan plan;
 };
+
+/// The frames that --frames names; empty where it was not given.
+/// @throws InputError   as parse_frames()
+inline std::vector<int> asked_frames(const CommandLine& line, const Scene& scene) {
+    return line.frames.empty() ? std::vector<int>() : parse_frames(line.frames, frame_count(scene));
+}
 
 /// Prints the JSON object or the text that ends a command.
 void print_result(const CommandLine& line, const nlohmann::ordered_json& json,

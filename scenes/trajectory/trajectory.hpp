@@ -35,8 +35,11 @@ struct TrajectoryHeader {
     std::uint64_t bodies = 0;
     double steps_per_second = 0;
     std::uint64_t store_every = 0;  ///< 0: the steps that frames need
-    int motion_version = 1;         ///< by which bodies were moved; 1 in files that do not say it
-    BodyDescriptions described;     ///< of all bodies, for the writer; a reader leaves it empty
+    /// That the scene is simulated to: a file whose last row is of an earlier one ends early. None
+    /// in files that do not say it.
+    std::optional<std::uint64_t> last_step;
+    int motion_version = 1;      ///< by which bodies were moved; 1 in files that do not say it
+    BodyDescriptions described;  ///< of all bodies, for the writer; a reader leaves it empty
 };
 
 /// What a stored step is besides the bodies' states.
@@ -64,7 +67,7 @@ class TrajectoryWriter {
     /// Continues an unfinished file of the same motion whose rows are the first of `steps`; else a
     /// copy of such a finished one, which stays whole until the copy takes its name; else starts
     /// anew.
-    /// @param steps       all steps that will be stored, ascending, at least one
+    /// @param steps       all steps that the scene stores, ascending, at least one
     /// @param overwrite   a finished file, and an unfinished one of another motion or of other
     ///                    steps, is replaced
     /// @throws InputError   such a file is there, and not `overwrite`
@@ -97,8 +100,9 @@ class TrajectoryWriter {
     /// Everything appended so far goes to the system now.
     void flush();
 
-    /// After the last row: leaves what a longer run needs to go on (52 bytes a contact that
-    /// pushes), takes out what only resuming needs, checks, syncs, renames.
+    /// After the last row, or an earlier one where no more are asked for: leaves what a longer run
+    /// needs to go on (52 bytes a contact that pushes), takes out what only resuming needs, checks,
+    /// syncs, renames.
     void finish();
 
   private:

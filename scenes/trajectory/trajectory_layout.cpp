@@ -25,7 +25,7 @@ static_assert(sizeof(Vec4) == 32 && sizeof(Rotor) == 64 && sizeof(Bivector) == 4
               "states are written as they lie in memory");
 
 constexpr const char* kScene = "/parameters/scene";
-constexpr const char* kMotionVersionName = "motion_version";
+constexpr const char *kMotionVersionName = "motion_version", *kLastStepName = "last_step";
 
 /// Bytes of a chunk of states, usual 1 MiB (HDF5's chunk cache holds one). A chunk never spans
 /// rows: compressed chunks that grow are moved, and their old place, which the last flush still
@@ -135,6 +135,9 @@ void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
                         &header.steps_per_second);
     hdf5::add_attribute(scene.get(), "store_every", H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
                         &header.store_every);
+    if (header.last_step)
+        hdf5::add_attribute(scene.get(), kLastStepName, H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                            &*header.last_step);
     hdf5::add_attribute(scene.get(), kMotionVersionName, H5T_STD_I32LE, H5T_NATIVE_INT, {},
                         &header.motion_version);
     const std::pair<const char*, const std::string*> texts[] = {
@@ -266,6 +269,9 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
     hdf5::read_attribute(scene.get(), "steps_per_second", H5T_NATIVE_DOUBLE,
                          &header.steps_per_second);
     hdf5::read_attribute(scene.get(), "store_every", H5T_NATIVE_UINT64, &header.store_every);
+    if (hdf5::has_attribute(scene.get(), kLastStepName))
+        hdf5::read_attribute(scene.get(), kLastStepName, H5T_NATIVE_UINT64,
+                             &header.last_step.emplace());
     if (hdf5::has_attribute(scene.get(), kMotionVersionName))
         hdf5::read_attribute(scene.get(), kMotionVersionName, H5T_NATIVE_INT,
                              &header.motion_version);

@@ -26,11 +26,14 @@ namespace fs = std::filesystem;
 /// Bodies' poses at the moments of a page, read one after the other.
 class ViewPoses {
   public:
-    ViewPoses(const Scene& scene, const fs::path& trajectory) : bodies_(scene.bodies) {
-        const std::vector<int> frames = parse_frames("", frame_count(scene));
+    /// @param asked   frames; empty: all
+    ViewPoses(const Scene& scene, const fs::path& trajectory, const std::vector<int>& asked)
+        : bodies_(scene.bodies) {
+        const std::vector<int> frames =
+            asked.empty() ? parse_frames("", frame_count(scene)) : asked;
         const CameraPath path = scene.camera_path();
         if (!trajectory.empty()) rows_ = std::make_unique<TrajectoryReader>(trajectory);
-        if (!rows_ || has_steps_of(scene, frames)) {
+        if (!rows_ || !asked.empty() || has_steps_of(scene, frames)) {
             rows_.reset();
             poses_ = std::make_unique<Poses>(scene, frames, trajectory);
             for (const int frame : frames) instants_.push_back(frame_instant(scene, frame));
@@ -110,7 +113,7 @@ void require_page(const fs::path& file, bool overwrite) {
 ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::path& file,
                       const ViewOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
-    ViewPoses poses(scene, trajectory);
+    ViewPoses poses(scene, trajectory, options.frames);
     const std::vector<ViewMoment>& moments = poses.moments();
     Progress progress("packing", "moments", 2 * moments.size(), options.quiet);
     std::uint64_t done = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "scenes/scene.hpp"
 
@@ -21,6 +22,7 @@ struct ViewReport {
 constexpr std::uint64_t kMostPoseBytes = 192'000'000;
 
 struct ViewOptions {
+    std::vector<int> frames;  ///< that the page shows; empty: all
     /// Leaves out bodies that never come as near as this to the film's slice [m].
     std::optional<double> near_slice;
     std::uint64_t most_pose_bytes = kMostPoseBytes;
@@ -32,10 +34,12 @@ struct ViewOptions {
 /// @throws InputError   else, unless `overwrite`
 void require_page(const std::filesystem::path& file, bool overwrite);
 
-/// Writes one self-contained page that shows a scene's slice at any moment: the film's frames, or
-/// where the trajectory does not have the steps for them the steps that it stores.
+/// Writes one self-contained page that shows a scene's slice at any moment: the frames that are
+/// asked for, else all of the film, or where the trajectory does not have the steps for them the
+/// steps that it stores.
 /// @param trajectory   empty: of a scene that stands still
-/// @throws InputError  the trajectory is of another motion; more than a page can hold
+/// @throws InputError  the trajectory is of another motion, or lacks steps that the frames which
+///                     are asked for need; more than a page can hold
 /// @throws RunError    the file cannot be written
 /// @throws Stopped     after a signal
 ViewReport write_view(const Scene& scene, const std::filesystem::path& trajectory,

@@ -53,6 +53,18 @@ TEST(Timeline, FrameBetweenStepsNeedsBoth) {
     EXPECT_EQ(steps_for_frames(scene, {0, 1, 3}), (std::vector<std::uint64_t>{0, 3, 4, 10}));
 }
 
+TEST(Timeline, TheLastStepNeededIsThatInWhichTheLastShutterCloses) {
+    Scene scene = scene_of(1, 240, 30);  // 8 steps a frame, frames 0 to 29
+    EXPECT_EQ(last_step_needed(scene, {0}), 0u);
+    EXPECT_EQ(last_step_needed(scene, {1, 5}), 40u);
+    scene.camera.shutter = 0.5;
+    EXPECT_EQ(last_step_needed(scene, {0}), 4u);
+    scene.camera.shutter = 0.51;  // 4.08 steps: between 4 and 5
+    EXPECT_EQ(last_step_needed(scene, {0}), 5u);
+    scene.camera.shutter = 1;
+    EXPECT_EQ(last_step_needed(scene, {29}), 240u);
+}
+
 TEST(Timeline, VectorsOfMotionAskForTheStepsOfTheFramesBeside) {
     Scene scene = scene_of(1, 240, 30);  // 8 steps a frame, frames 0 to 29
     scene.render.channels.motion = true;

@@ -44,8 +44,8 @@ TEST(Rehearsal, TakesTheStepsOfTheSimulation) {
     const tesserae::testing::TemporaryFolder folder("rehearsal");
     Rehearsal rehearsal;
     parallel::Threads(2).run([&] {
-        simulate(scene, plan, folder / "a.h5", 1, false, true);
-        rehearsal = rehearse(scene, plan, 1e9);
+        simulate(scene, plan, folder / "a.h5", {.store_every = 1, .quiet = true});
+        rehearsal = rehearse(scene, plan, plan.steps, 1e9);
     });
     EXPECT_TRUE(rehearsal.is_whole());
     EXPECT_EQ(rehearsal.steps, 60u);
@@ -66,7 +66,8 @@ TEST(Rehearsal, TakesTheStepsOfTheSimulation) {
 TEST(Rehearsal, GuessesWhatItHadNoTimeFor) {
     const Scene scene = load_text(falling(600'000), {});
     Rehearsal rehearsal;
-    parallel::Threads(1).run([&] { rehearsal = rehearse(scene, make_plan(scene, 1), 0.05); });
+    parallel::Threads(1).run(
+        [&] { rehearsal = rehearse(scene, make_plan(scene, 1), 600'000, 0.05); });
     EXPECT_FALSE(rehearsal.is_whole());
     EXPECT_GE(rehearsal.taken, 1u);
     // What is left costs at least as much a step as the cheapest that were taken.
@@ -81,7 +82,7 @@ TEST(Rehearsal, TakesOneStepAtLeast) {
         Rehearsal rehearsal;
         Cost cost;
         parallel::Threads(1).run([&] {
-            rehearsal = rehearse(scene, make_plan(scene, 1), seconds);
+            rehearsal = rehearse(scene, make_plan(scene, 1), 600'000, seconds);
             cost = measure_cost(scene, make_plan(scene, 1), {}, {0, 1, 2}, seconds);
         });
         EXPECT_EQ(rehearsal.taken, 1u);
@@ -114,7 +115,7 @@ TEST(Cost, IsThatOfTheFilm) {
     Cost cost, known;
     parallel::Threads(2).run([&] {
         cost = measure_cost(scene, plan, {}, frames, 1e9);
-        simulate(scene, plan, folder / "a.h5", 0, false, true);
+        simulate(scene, plan, folder / "a.h5", {.quiet = true});
         known = measure_cost(scene, plan, folder / "a.h5", frames, 1e9);
         film(scene, frames, folder / "a.h5", folder.path() / "film", Replace::kNothing, true);
     });
@@ -122,7 +123,7 @@ TEST(Cost, IsThatOfTheFilm) {
     EXPECT_GT(cost.simulate_seconds, 0);
     EXPECT_GT(cost.render_seconds, 0);
     EXPECT_EQ(known.simulate_seconds, 0) << "it is there";
-    EXPECT_EQ(cost.measured.front(), "60 of 60 steps");
+    EXPECT_EQ(cost.measured.front(), "57 of 57 steps") << "to the last of 20 frames";
     double bytes = 0;
     for (const auto& entry : fs::directory_iterator(folder.path() / "film/frames"))
         bytes += static_cast<double>(entry.file_size());

@@ -23,7 +23,7 @@ SliceReport report_of(const std::string& bodies, const std::vector<std::string>&
     const tesserae::testing::TemporaryFolder folder("in_slice");
     SliceReport report;
     parallel::Threads(1).run([&] {
-        simulate(scene, make_plan(scene, 1), folder / "a.h5", 0, false, true);
+        simulate(scene, make_plan(scene, 1), folder / "a.h5", {.quiet = true});
         report = look_at_slice(scene, folder / "a.h5", parse_frames("", frame_count(scene)));
     });
     return report;
