@@ -152,6 +152,8 @@ std::vector<Case> all_cases() {
          view(kFar, "channels = [\"color\"]\n") + block()},
         {"lens", "lens", kFilm, 0, view(kFar + "aperture = 1e-9\nfocus_distance = 40\n") + block(),
          view(kFar + "aperture = 0\nfocus_distance = 40\n") + block()},
+        {"ghosts", "ghosts", kFilm, 0, view(kFar, "ghost_depth = 1e-9\n") + block(), far},
+        {"overlay", "overlay", kFilm, 0, far + "[overlay]\ntitle = \"-\"\n", far},
         {"shutter", "motion blur", kFilm, 0, view(kFar + "shutter = 1e-9\n") + block() + drifting,
          view(kFar) + block() + drifting},
         {"frames_at_rest", "moving camera", kFilm, 0, resting + same_noise + key,

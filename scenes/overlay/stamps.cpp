@@ -89,7 +89,7 @@ SlicePose::SlicePose(const std::filesystem::path& exr) {
 }
 
 OverlayPainter::OverlayPainter(const Scene& scene)
-    : scene_(scene), path_(scene.camera, scene.camera_keys) {
+    : scene_(scene), path_(scene.camera_path()) {
     if (!is_empty()) font_.emplace(scene.overlay.font);
 }
 

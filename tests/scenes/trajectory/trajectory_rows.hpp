@@ -86,12 +86,19 @@ inline BodyDescriptions make_descriptions(std::size_t bodies) {
 }
 
 inline TrajectoryHeader make_header(std::size_t bodies) {
-    return {"test",      "# t\xc3\xa9xt\n",
-            "effective", "0123",
-            "4567",      "tesserae",
-            "0.1.0",     bodies,
-            240,         3,
-            1,           make_descriptions(bodies)};
+    return {"test",
+            "# t\xc3\xa9xt\n",
+            "effective",
+            "0123",
+            "4567",
+            "tesserae",
+            "0.1.0",
+            bodies,
+            240,
+            3,
+            {},
+            1,
+            make_descriptions(bodies)};
 }
 
 inline std::vector<std::uint64_t> make_steps(std::uint64_t rows) {
