@@ -68,6 +68,8 @@ struct FrameStats {
     std::uint64_t view_rays = 0, shadow_rays = 0, bounce_rays = 0, distance_evaluations = 0;
     /// Sphere traces that used up their steps; they count as hits, so that no ray leaks through.
     std::uint64_t unresolved = 0;
+    /// Light paths that ended at a mirror or glass as they had used up Settings::specular_bounces.
+    std::uint64_t cut_paths = 0;
     /// Samples whose colour was infinite or no number: left out of their pixels, as black.
     std::uint64_t invalid_samples = 0;
     SampleNumber first_invalid;  ///< the lowest of them, if there is any
@@ -79,6 +81,7 @@ struct FrameStats {
         view_rays += o.view_rays, shadow_rays += o.shadow_rays;
         bounce_rays += o.bounce_rays;
         distance_evaluations += o.distance_evaluations, unresolved += o.unresolved;
+        cut_paths += o.cut_paths;
         if (o.invalid_samples > 0) count_invalid(o.first_invalid, o.invalid_samples);
         if (o.clamped_pixels > 0) count_clamped(o.first_clamped, o.clamped_pixels);
         return *this;

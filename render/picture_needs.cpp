@@ -32,7 +32,8 @@ PictureNeeds needs_of(const Picture& picture) {
     needs.shadow_rays = (!lights.is_empty() || glowing > 0) && any_visible(false);
     needs.lamp_choice =
         is_path && any_visible(false) && lights.spheres.size() + glowing > Lamps::kEach;
-    needs.bounce_rays = any_visible(true) || (is_path && any_visible(false));
+    needs.specular_rays = any_visible(true);
+    needs.bounce_rays = needs.specular_rays || (is_path && any_visible(false));
     needs.centre_rays = has_centre_rays(settings);
     needs.more_samples = settings.noise_target > 0;
     needs.lens = camera.aperture > 0;

@@ -12,6 +12,7 @@ namespace tesserae::render {
 /// 4: every sample has a time of its own while the shutter is open; paths take directions by
 /// functions of our own in place of the C library's, so their noise is another.
 /// 5: glass whose material gives no albedo takes no light.
-constexpr int kPictureVersion = 5;
+/// 6: mirrors and glass have a limit of their own and end no path at random that loses no light.
+constexpr int kPictureVersion = 6;
 
 }  // namespace tesserae::render

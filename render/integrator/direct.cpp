@@ -34,13 +34,12 @@ bool DirectIntegrator::scatter(LightPath& path, int scattered, FrameStats& stats
         return false;
     }
     const Surface& surface = *path.surface;
-    const bool is_last = scattered > settings_.bounces;
-    if (!is_last && !is_specular(*surface.material)) {
+    if (!is_specular(*surface.material)) {
         path.sum += path.throughput * shading_.radiance(surface, -path.ray.direction, stats);
         return false;
     }
     path.sum += path.throughput * surface.material->emission;
-    if (is_last) return false;
+    if (is_cut(path, stats)) return false;
 
     const auto u = path.sampler.group(first_group(scattered, lights_.spheres.size()));
     scatter_specular(path, u[0]);

@@ -12,7 +12,9 @@ namespace {
 
 /// From this bounce on a path may end at random.
 constexpr int kRouletteFrom = 4;
-/// And it goes on at most this often, so that no path runs for ever between white surfaces.
+/// And it goes on at most this often from surfaces other than mirrors and glass, so that no path
+/// runs for ever between white ones. Mirrors and clear glass end none at random: a few paths are
+/// long, which costs little, and bright specks would be what is left of them.
 constexpr double kSurvival = 0.95;
 
 }  // namespace
@@ -113,6 +115,13 @@ void LightIntegrator::scatter_specular(LightPath& path, double choice) const {
             path.ray.origin = glass_.start_outside(s.body, s.point, path.ray.direction, s.time);
     }
     path.throughput *= weight;
+    ++path.specular;
+}
+
+bool LightIntegrator::is_cut(const LightPath& path, FrameStats& stats) const {
+    if (path.specular < settings_.specular_bounces) return false;
+    ++stats.cut_paths;
+    return true;
 }
 
 bool LightIntegrator::survives(LightPath& path, int scattered, double chance) const {
@@ -121,7 +130,7 @@ bool LightIntegrator::survives(LightPath& path, int scattered, double chance) co
     const double most = path.throughput.maxCoeff() * index * index * index;
     if (!(most > 0)) return false;
     if (scattered < kRouletteFrom) return true;
-    const double survival = std::min(kSurvival, most);
+    const double survival = std::min(is_specular(*path.surface->material) ? 1 : kSurvival, most);
     if (chance >= survival) return false;
     path.throughput /= survival;
     return true;

@@ -56,6 +56,7 @@ struct LightPath {
     const Surface* surface;
     bool is_exit;  ///< the surface is met from inside, out of the medium
     std::uint32_t light = LightSet::kNone;
+    int specular = 0;  ///< scatterings by mirrors and glass so far
 
     Color sum = Color::Zero(), throughput = Color::Ones();
     Color from_lights = Color::Zero();  ///< what the surface sends on of what lights bring to it
@@ -90,10 +91,10 @@ struct PathWave {
 };
 
 /// The radiance along view rays. A ray is followed from surface to surface: mirrors and glass send
-/// it on, up to `bounces` times; what comes from other surfaces is where DirectIntegrator and
-/// PathIntegrator differ. `bounces` = 0 is emitted and direct light: at most bounces + 1 surfaces
-/// scatter a path. Sphere lights are seen by every ray and end it, in front of what lies behind
-/// them; suns with an angle are seen by all but view rays.
+/// it on, up to `specular_bounces` times; what comes from other surfaces is where DirectIntegrator
+/// and PathIntegrator differ: `bounces` = 0 is emitted and direct light, also by way of mirrors and
+/// glass; at most bounces + 1 of them scatter a path. Sphere lights are seen by every ray and end
+/// it, in front of what lies behind them; suns with an angle are seen by all but view rays.
 class LightIntegrator {
   public:
     /// All must outlive it.
@@ -133,6 +134,8 @@ class LightIntegrator {
     /// The same from a mirror or glass.
     /// @param choice   uniform in [0, 1): between reflection and refraction
     void scatter_specular(LightPath& path, double choice) const;
+    /// Whether a path that has come to a mirror or glass must end there; counted.
+    bool is_cut(const LightPath& path, FrameStats& stats) const;
     /// Whether a path goes on after its scattering: by Russian roulette once it is long.
     /// @param chance   uniform in [0, 1)
     bool survives(LightPath& path, int scattered, double chance) const;
@@ -175,7 +178,7 @@ class PathIntegrator : public LightIntegrator {
                   FrameStats& stats) const override;
 
   private:
-    bool arrive(LightPath& path, int scattered) const;
+    bool arrive(LightPath& path, int scattered, FrameStats& stats) const;
     void light(PathWave& wave, int scattered, FrameStats& stats) const;
     void scatter(PathWave& wave, int scattered) const;
     /// Adds light that comes to where a path has arrived; indirect light is clamped.

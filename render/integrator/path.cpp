@@ -48,7 +48,7 @@ void PathIntegrator::radiance(std::span<const ViewSample> samples, std::span<Col
     for (std::uint32_t i = 0; i < samples.size(); ++i) begin(wave, samples[i], i);
     for (int scattered = 0; !wave.live.empty(); ++scattered) {
         std::erase_if(wave.live,
-                      [&](std::uint32_t i) { return !arrive(wave.paths[i], scattered); });
+                      [&](std::uint32_t i) { return !arrive(wave.paths[i], scattered, stats); });
         light(wave, scattered, stats);
         scatter(wave, scattered);
         trace(wave, stats);
@@ -58,7 +58,7 @@ void PathIntegrator::radiance(std::span<const ViewSample> samples, std::span<Col
 
 /// Adds what comes by itself from where a path has arrived after so many scatterings. False where
 /// it ends.
-bool PathIntegrator::arrive(LightPath& path, int scattered) const {
+bool PathIntegrator::arrive(LightPath& path, int scattered, FrameStats& stats) const {
     if (!path.meets_surface()) {
         add(path, light_seen(path, lamp_density(path)), path.since_rough > 1);
         return false;
@@ -66,7 +66,8 @@ bool PathIntegrator::arrive(LightPath& path, int scattered) const {
     const Color& emission = path.surface->material->emission;
     if (!(emission == 0).all())
         add(path, power_weight(path.density, lamp_density(path)) * emission, path.since_rough > 1);
-    return scattered <= settings_.bounces;
+    if (is_specular(*path.surface->material)) return !is_cut(path, stats);
+    return scattered - path.specular <= settings_.bounces;
 }
 
 /// Adds what lights bring to the surfaces of the live paths.

@@ -160,6 +160,20 @@ std::string invalid_samples_text(const render::FrameStats& stats, const Scene& s
         command_for(scene, frame, s));
 }
 
+std::string cut_paths_text(const render::FrameStats& stats, const Scene& scene, int frame) {
+    // Less changes no code of a picture by more than clear polychora's long paths always do.
+    constexpr double kTold = 1e-3;
+    const auto cut = static_cast<double>(stats.cut_paths);
+    if (!(cut > kTold * static_cast<double>(stats.view_rays))) return {};
+    return fmt::format(
+        "{}: frame {}: {:.2g} % of the light paths were cut off at {} mirrors and surfaces of "
+        "glass "
+        "and are black from there on; a greater render.specular_bounces follows them farther, but "
+        "for what is caught in glass or between mirrors for ever",
+        scene.file.string(), frame, 100 * cut / static_cast<double>(stats.view_rays),
+        scene.render.specular_bounces);
+}
+
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
                 const fs::path& folder, Replace replace, bool quiet,
                 std::optional<render::FramePart> part) {
@@ -210,7 +224,8 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
         picture.overlay = overlay;
         const auto warn = [&](const render::FrameStats& stats) {
             for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
-                                            clamped_pixels_text(stats, scene, info.frame)})
+                                            clamped_pixels_text(stats, scene, info.frame),
+                                            cut_paths_text(stats, scene, info.frame)})
                 if (!text.empty()) tell(text);
             report.stats += stats;
         };

@@ -25,6 +25,10 @@ struct FilmReport {
 /// the pixel of the lowest again. Empty if there are none.
 std::string invalid_samples_text(const render::FrameStats& stats, const Scene& scene, int frame);
 
+/// Which part of a frame's light paths was cut off between mirrors and in glass, and what to do.
+/// Empty if it is less than a thousandth.
+std::string cut_paths_text(const render::FrameStats& stats, const Scene& scene, int frame);
+
 /// How many pixels of a frame are too bright for the file, and the command that renders the lowest
 /// again. Empty if there are none.
 std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& scene, int frame);

@@ -344,10 +344,15 @@ void ray_keys(auto& self, const auto& visit) {
            "Light is found in closed form from lamps and an even sky, or by paths through the "
            "scene."},
           self.integrator, Names{kPictureIntegrators});
-    visit({"bounces", "",
-           "Light is followed by way of so many surfaces; direct follows it through mirrors and "
-           "glass only."},
-          self.bounces, IntegerRange{0, kMaxBounces});
+    visit(
+        {"bounces", "",
+         "With path light is followed by way of so many surfaces, mirrors and glass not counted."},
+        self.bounces, IntegerRange{0, kMaxBounces});
+    visit({"specular_bounces", "",
+           "Light is followed by way of so many mirrors and surfaces of glass; what is left of it "
+           "is black."},
+          self.specular_bounces,
+          IntegerOrUnwritten{{0, kMaxBounces}, render::kUsualSpecularBounces});
     visit({"clamp_indirect", "",
            "A sample gets at most this radiance by way of two surfaces or more, which removes "
            "bright specks; 0 is no limit."},

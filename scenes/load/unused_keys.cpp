@@ -27,8 +27,10 @@ void check_render(Unused unused, const Scene& scene) {
     const render::PictureNeeds needs = render::needs_of(
         {scene.bodies, scene.appearance, scene.materials, scene.camera, scene.lights, s});
     const bool is_path = s.integrator == render::Integrator::kPath;
-    unused(!is_path && !needs.bounce_rays, "bounces",
-           "integrator = \"direct\", and nothing that is seen is a mirror or glass");
+    unused(!is_path, "bounces",
+           "integrator = \"direct\" follows light by way of mirrors and glass only, see "
+           "specular_bounces");
+    unused(!needs.specular_rays, "specular_bounces", "nothing that is seen is a mirror or glass");
     unused(!is_path, "clamp_indirect", "integrator = \"direct\" has no indirect light");
     unused(s.noise_target == 0, "max_samples", "noise_target = 0: every pixel has `samples`");
     unused(s.intersector == render::Intersector::kAnalytic, "max_steps",

@@ -46,6 +46,14 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
                 fmt::format("integrator = \"path\": emitted and direct light and {} bounce(s)",
                             scene.render.bounces),
                 "integrator = \"direct\"");
+    const auto reflects = count_if_type(scene.bodies, [&](auto t) {
+        const render::Appearance& a = scene.appearance[t];
+        return a.visible && render::is_specular(scene.materials[a.material]);
+    });
+    plan.decide("reflected and refracted rays", needs.specular_rays,
+                fmt::format("{} bodies of mirror or glass, up to {} of their surfaces a path",
+                            reflects, scene.render.specular_bounces),
+                "nothing is a mirror or glass");
     if (is_path) {
         plan.decide("choice of lamps", needs.lamp_choice,
                     "of the sphere lights and glowing bodies a surface asks one for light",
@@ -55,17 +63,7 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
         plan.decide("clamped indirect light", most > 0,
                     fmt::format("clamp_indirect = {}: brighter indirect light is lost", most),
                     "clamp_indirect = 0: all light counts");
-        return;
     }
-    // Diffuse and rough surfaces end a ray of the direct picture.
-    const auto reflects = count_if_type(scene.bodies, [&](auto t) {
-        const render::Appearance& a = scene.appearance[t];
-        return a.visible && render::is_specular(scene.materials[a.material]);
-    });
-    plan.decide(
-        "reflected and refracted rays", needs.bounce_rays,
-        fmt::format("{} bodies of mirror or glass, {} bounce(s)", reflects, scene.render.bounces),
-        "nothing is a mirror or glass");
 }
 
 void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& plan) {

@@ -44,6 +44,7 @@ Json to_json(const FilmReport& r) {
             {"view_rays", r.stats.view_rays},
             {"shadow_rays", r.stats.shadow_rays},
             {"bounce_rays", r.stats.bounce_rays},
+            {"cut_paths", r.stats.cut_paths},
             {"invalid_samples", r.stats.invalid_samples},
             {"clamped_pixels", r.stats.clamped_pixels},
             {"distance_evaluations", r.stats.distance_evaluations},

@@ -97,8 +97,8 @@ std::string hash_of_content(const std::string& path) {
 TEST_F(Golden, GalleryScenesLookAsEver) {
     const std::pair<const char*, const char*> stills[] = {
         {"sheet", "7b695b55e69d6fcfaf81bc118cd981c7"},
-        {"glass", "547bf93a91acfa77ce7c700d861d33e0"},
-        {"room", "7f56164d8cee6b373655ff41cdd68420"},
+        {"glass", "1aad7366f5e8b1892717e5625adb9aed"},
+        {"room", "506e8a1d65939ee16ffcbb4b8db2fa06"},
         {"lens", "b3525954a0cbceb8ae420329eb4f9668"},
         {"turn", "d730830bf3bcedec6d45b0377bb49f93"}};
     const testing::Folder folder("golden");

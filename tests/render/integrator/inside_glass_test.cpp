@@ -69,7 +69,13 @@ class GlassReference {
   public:
     explicit GlassReference(const TracedScene& traced) : t_(traced) {}
 
-    Color radiance(const Vec4& origin, const Vec4& direction, int scattered, Random& random) const {
+    /// Of a path's scatterings so far.
+    struct Scattered {
+        int rough = 0, specular = 0;
+    };
+
+    Color radiance(const Vec4& origin, const Vec4& direction, Scattered scattered,
+                   Random& random) const {
         const auto passed = surfaces_on(origin, direction);
         const auto behind = [&](std::size_t k) {
             const double from = k == 0 ? 0 : passed[k - 1].first;
@@ -131,10 +137,14 @@ class GlassReference {
     }
 
     Color from_surface(std::uint32_t body, std::uint32_t here, std::uint32_t there,
-                       const Vec4& point, const Vec4& direction, int scattered,
+                       const Vec4& point, const Vec4& direction, Scattered scattered,
                        Random& random) const {
         const Material& m = material(body);
-        if (scattered > t_.scene.settings.bounces) return m.emission;
+        const Settings& settings = t_.scene.settings;
+        if (is_glass(body) ? scattered.specular == settings.specular_bounces
+                           : scattered.rough > settings.bounces)
+            return m.emission;
+        ++(is_glass(body) ? scattered.specular : scattered.rough);
         const PlacedBody& b = t_.placed.bodies[body];
         const Vec4 local = t_.placed.point_to_body(b, point);
         Vec4 facing = t_.placed.direction_to_world(
@@ -143,7 +153,7 @@ class GlassReference {
         if (!is_glass(body)) {
             Vec4 next = random_direction(random);
             if (next.dot(facing) < 0) next = -next;
-            const Color from = radiance(point, next, scattered + 1, random);
+            const Color from = radiance(point, next, scattered, random);
             return m.emission + m.albedo * (3 / (4 * pi) * next.dot(facing) * pi * pi) * from;
         }
         // Fresnel by the angles; two of three polarisations lie across the plane of incidence.
@@ -163,10 +173,10 @@ class GlassReference {
         const Vec4 along = direction - direction.dot(facing) * facing;
         if (uniform(random, 0, 1) < reflected)
             return m.emission + m.albedo * radiance(point, along - direction.dot(facing) * facing,
-                                                    scattered + 1, random);
+                                                    scattered, random);
         const Vec4 across = along * (n1 / n2) - std::sqrt(1 - sine * sine) * facing;
         return m.emission + m.albedo * std::pow(n1 / n2, 3) *
-                                radiance(point, across.normalized(), scattered + 1, random);
+                                radiance(point, across.normalized(), scattered, random);
     }
 
     const TracedScene& t_;
@@ -176,6 +186,7 @@ class GlassReference {
 /// one glowing, and two of diffuse ones, black for DirectIntegrator.
 TestScene heap_about_the_origin(Random& random, Integrator integrator) {
     TestScene scene = path_scene(12);
+    scene.settings.specular_bounces = 12;
     scene.settings.integrator = integrator;
     scene.lights.sky = {1, 0.6, 0.2};
     scene.materials.resize(5);
@@ -215,7 +226,7 @@ void expect_heaps_of_glass(int heaps) {
         const Mean found = mean_radiance(traced, direction, 1500);
         Mean expected;
         for (int k = 0; k < 1500; ++k)
-            expected.add(reference.radiance(Vec4::Zero(), direction, 0, random));
+            expected.add(reference.radiance(Vec4::Zero(), direction, {}, random));
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(found.mean()[c], expected.mean()[c],
                         4.5 * std::hypot(found.sigma()[c], expected.sigma()[c]) + 1e-9)

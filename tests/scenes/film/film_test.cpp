@@ -37,5 +37,20 @@ TEST(ClampedPixels, AreReportedWithACommandThatRendersTheLowestAgain) {
               "render it alone: tesserae render dir/drop.toml --frames 7 --crop 8,5,9,6 -o DIR");
 }
 
+TEST(CutPaths, AreReportedFromAThousandthOnWithWhatToDo) {
+    Scene scene;
+    scene.file = "dir/gem.toml";
+    scene.render.specular_bounces = 9;
+    render::FrameStats stats, other;
+    stats.view_rays = 50'000, stats.cut_paths = 50;
+    EXPECT_EQ(cut_paths_text(stats, scene, 7), "");
+    other.view_rays = 50'000, other.cut_paths = 150;
+    stats += other;
+    EXPECT_EQ(cut_paths_text(stats, scene, 7),
+              "dir/gem.toml: frame 7: 0.2 % of the light paths were cut off at 9 mirrors and "
+              "surfaces of glass and are black from there on; a greater render.specular_bounces "
+              "follows them farther, but for what is caught in glass or between mirrors for ever");
+}
+
 }  // namespace
 }  // namespace tesserae::scenes

@@ -239,6 +239,8 @@ const std::vector<Broken>& broken_scenes() {
         {"[render]\nintegrator = \"euler\"\n", "2:14", {"\"direct\"", "\"path\""}},
         {"[render]\nbounces = 1000001\n", "2:11", {"0 to 1000000"}},
         {"[render]\nbounces = -1\n", "2:11", {"bounces = -1"}},
+        {"[render]\nspecular_bounces = 1000001\n", "2:20", {"0 to 1000000"}},
+        {"[render]\nspecular_bounces = -1\n", "2:20", {"specular_bounces = -1"}},
         {"[[material]]\nname = \"a\"\nkind = \"glas\"\n", "3:8", {"did you mean \"glass\"?"}},
         {"[[material]]\nname = \"a\"\nroughness = 1.5\n", "3:13", {">= 0 and <= 1"}},
         {"[[material]]\nname = \"a\"\nemission = [1, -1, 1]\n", "3:16", {"emission[1] = -1"}},

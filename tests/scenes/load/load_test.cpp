@@ -195,6 +195,8 @@ TEST(LoadScene, EveryMaterialKindAndItsDefaults) {
     }
     EXPECT_EQ(load_text("[scene]").render.bounces, 4);
     EXPECT_EQ(load_text("[render]\nbounces = 1000000").render.bounces, 1'000'000);
+    EXPECT_EQ(load_text("[scene]").render.specular_bounces, 128);
+    EXPECT_EQ(load_text("[render]\nspecular_bounces = 5").render.specular_bounces, 5);
 }
 
 TEST(LoadScene, OddButLegal) {
@@ -212,7 +214,8 @@ TEST(LoadScene, OddButLegal) {
           body + "[body.rotation]\nxy = -0.0\n", body + "rotation.xy = 0\nrotation.zw = 0\n"})
         EXPECT_EQ(load_text(same).hash, hash) << same;
     // Defaults of what is not built yet.
-    EXPECT_EQ(load_text(body + "[render]\nintegrator = \"direct\"\nbounces = 4\nfilter = \"box\"\n"
+    EXPECT_EQ(load_text(body + "[render]\nintegrator = \"direct\"\nbounces = 4\nspecular_bounces = "
+                               "128\nfilter = \"box\"\n"
                                "max_samples = 16\n[camera]\nslices = 1\naperture = 0\n")
                   .hash,
               hash);

@@ -14,6 +14,7 @@ TEST(UnusedKeys, AreNamedWithTheirPlaceAndReason) {
         std::string text, key, reason;
     } cases[] = {
         {"[render]\nbounces = 3\n", "2:11: [render]: bounces = 3", "integrator = \"direct\""},
+        {"[render]\nspecular_bounces = 9\n", "specular_bounces = 9", "mirror or glass"},
         {"[render]\nclamp_indirect = 2.0\n", "clamp_indirect = 2", "no indirect light"},
         {"[render]\nmax_samples = 64\n", "max_samples = 64", "noise_target = 0"},
         {"[render]\nintersector = \"analytic\"\nmax_steps = 9\n", "max_steps = 9", "no steps"},
@@ -53,9 +54,10 @@ TEST(UnusedKeys, AreNamedWithTheirPlaceAndReason) {
 TEST(UnusedKeys, AreNoneWhereTheyCount) {
     const std::string mirror =
         "[[material]]\nname = \"m\"\nkind = \"mirror\"\n[[body]]\nshape = \"hypersphere\"\n"
-        "radius = 1\nmaterial = \"m\"\n[render]\nbounces = 3\n";
+        "radius = 1\nmaterial = \"m\"\n[render]\nspecular_bounces = 3\n";
     const std::vector<std::string> path = {"render.integrator=\"path\""};
     EXPECT_TRUE(load_text(mirror, {}).unused.empty());
+    EXPECT_TRUE(load_text(mirror, path).unused.empty());
     EXPECT_TRUE(load_text("[render]\nbounces = 3\nclamp_indirect = 2.0\n", path).unused.empty());
     EXPECT_EQ(load_text("[render]\nbounces = 3\n", {}).unused.size(), 1u);
     EXPECT_TRUE(load_text("[render]\nsamples = 2\nfilter_width = 2.0\n", {}).unused.empty());
