@@ -13,6 +13,7 @@ namespace tesserae::render {
 /// functions of our own in place of the C library's, so their noise is another.
 /// 5: glass whose material gives no albedo takes no light.
 /// 6: mirrors and glass have a limit of their own and end no path at random that loses no light.
-constexpr int kPictureVersion = 6;
+/// 7: in direct pictures the soft shadows of several bodies add up.
+constexpr int kPictureVersion = 7;
 
 }  // namespace tesserae::render

@@ -2,13 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tesserae::render {
 namespace {
 
-/// Bodies that a walk meets before its cone narrows. To begin anew with a narrower cone costs the
-/// walk about two boxes' tests: too much where it soon ends, as in a small sun's cone.
-constexpr int kBeforeNarrowing = 4;
+/// Of the sine of the angle between a body's normal and the one that is looked for.
+constexpr double kNear = 0.02;
+/// Usual 2; more are for rays that pass several sides of a body.
+constexpr int kMostSteps = 8;
+
+/// Out of a shape where a ray from outside passes it at the least angle, the rim's: there the
+/// distance f(t) touches sine * t from above. f being convex, a bracket closes in on it; the steps
+/// are Newton's for a double root.
+template <class S>
+Vec4 rim_normal(const S& shape, const Vec4& origin, const Vec4& direction, double limit,
+                double sine, FrameStats& stats) {
+    double low = 0, high = limit, t = -origin.dot(direction);
+    if (!(t > low && t < high)) t = high < kMiss ? high : origin.norm();
+    Vec4 out;
+    for (int i = 0; i < kMostSteps; ++i) {
+        ++stats.distance_evaluations;
+        const Vec4 point = origin + t * direction;
+        out = normal(shape, point);
+        const double slope = out.dot(direction) - sine;
+        if (std::abs(slope) < kNear) break;
+        (slope < 0 ? low : high) = t;
+        const double step = (signed_distance(shape, point) - sine * t) / slope;
+        const auto is_within = [&](double x) { return x > low && x < high; };
+        const double middle = high < kMiss ? 0.5 * (low + high) : 2 * low;
+        t = is_within(t - 2 * step) ? t - 2 * step : is_within(t - step) ? t - step : middle;
+    }
+    return out;
+}
 
 }  // namespace
 
@@ -24,12 +50,6 @@ double rim_sine(const PlacedBodies& placed, std::uint32_t index, const Ray& ray,
             return least.sine;
         },
         *body.shape);
-}
-
-double visible_part(double x) {
-    if (x <= -1) return 0;
-    if (x >= 1) return 1;
-    return 0.25 * (2 + 3 * x - x * x * x);
 }
 
 bool Shadows::is_behind(const Ray& ray, std::uint32_t body) const {
@@ -57,23 +77,46 @@ double Shadows::visibility(const LightDisc& light, const Vec4& point, std::uint3
     const Ray ray = {point, light.toward, on, std::min(light.limit, limit_), time};
     if (light.angle == 0) return is_hidden(ray, stats) ? 0 : 1;
 
-    // The cone that can still matter narrows to the nearest rim found.
-    double least = light.cone.sine;
-    Cone cone = light.cone;
-    int bodies = 0;
-    const auto narrow = [&](std::uint32_t body) {
+    thread_local std::vector<DiscCover> covers;  // keeps its memory
+    covers.clear();
+    bool hidden = false;
+    const double most = light.cone.sine;
+    const auto take = [&](std::uint32_t body) {
         if (body == on || is_behind(ray, body)) return true;
-        const double sine = rim_sine(placed_, body, ray, -light.cone.sine, least, stats);
-        least = std::min(least, sine);
-        if (++bodies >= kBeforeNarrowing && least < cone.sine)
-            cone = {least, std::sqrt(std::max(0.0, 1 - least * least))};
-        return least > -light.cone.sine;
+        const double sine = rim_sine(placed_, body, ray, -most, most, stats);
+        hidden = sine <= -most;
+        if (!hidden && sine < most) covers.push_back({body, std::asin(sine) / light.angle});
+        return !hidden;
     };
     for (std::uint32_t body : tree_.unbounded())
-        if (!narrow(body)) return 0;
-    tree_.for_each_in_cone(ray, cone, narrow);
-    if (least <= -light.cone.sine) return 0;
-    return visible_part(std::asin(least) / light.angle);
+        if (!take(body)) return 0;
+    tree_.for_each_in_cone(ray, light.cone, take);
+    if (hidden) return 0;
+    if (covers.empty()) return 1;
+    if (covers.size() == 1) return visible_part(covers[0].rim);
+    const TangentFrame frame(light.toward);
+    for (DiscCover& cover : covers) complete(cover, light, ray, frame, stats);
+    return clear_part(covers);
+}
+
+/// Finds where on the disc a cover lies.
+void Shadows::complete(DiscCover& cover, const LightDisc& light, const Ray& ray,
+                       const TangentFrame& frame, FrameStats& stats) const {
+    const PlacedBody& body = placed_.bodies[cover.body];
+    const Vec4 origin = placed_.point_to_body(body, ray.origin, ray.time);
+    const Vec4 direction = placed_.direction_to_body(body, ray.direction, ray.time);
+    const double sine = std::sin(cover.rim * light.angle);
+    std::visit(
+        [&](const auto& shape) {
+            const Vec4 out = rim_normal(shape, origin, direction, ray.limit, sine, stats);
+            cover.toward =
+                -frame.to_local(placed_.direction_to_world(body, out, ray.time)).head<3>();
+            cover.radius =
+                std::asin(std::min(1.0, bounding_radius(shape) / origin.norm())) / light.angle;
+        },
+        *body.shape);
+    const double length = cover.toward.norm();
+    cover.toward = length > 0 ? Eigen::Vector3d(cover.toward / length) : Eigen::Vector3d::UnitX();
 }
 
 }  // namespace tesserae::render

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "render/light/light_set.hpp"
+#include "render/light/overlap.hpp"
 #include "render/picture.hpp"
 #include "render/scene/body_tree.hpp"
 
@@ -13,16 +14,12 @@ namespace tesserae::render {
 double rim_sine(const PlacedBodies& placed, std::uint32_t body, const Ray& ray, double low,
                 double high, FrameStats& stats);
 
-/// The part of a light's disc that lies beyond a flat rim at angle x * half-angle from its middle,
-/// x in [-1, 1] (0 hidden, 1 clear). The disc is a 3-ball of directions, and a plane cuts
-/// (2 + 3x - x^3)/4 of a ball off, which is smoothstep((1 + x)/2).
-double visible_part(double x);
-
-/// How much of a light reaches a point: 0 to 1. The rim of the body that covers most of the disc
-/// decides, as in a distance field of the whole scene; the rim counts as flat, and a small disc of
-/// directions as a Euclidean ball. A hard light is hidden or not. A body counts as far as it comes
-/// before the limit, the light's or one of all rays, along the ray to the disc's middle: what
-/// stands beside a sphere light, between its near side and its rim, is decided by that.
+/// How much of a light reaches a point: 0 to 1. The rim of a body that alone covers a part of the
+/// disc counts as flat, and a small disc of directions as a Euclidean ball. Several bodies cover
+/// it together: clear_part(), each bent as the ball about it is seen. A hard light is hidden or
+/// not. A body counts as far as it comes before the limit, the light's or one of all rays, along
+/// the ray to the disc's middle: what stands beside a sphere light, between its near side and its
+/// rim, is decided by that.
 class Shadows {
   public:
     /// @param tree    of the bodies; it must outlive this, like them
@@ -37,6 +34,8 @@ class Shadows {
                       FrameStats& stats, double time = 0) const;
 
   private:
+    void complete(DiscCover& cover, const LightDisc& light, const Ray& ray,
+                  const TangentFrame& frame, FrameStats& stats) const;
     bool is_hidden(const Ray& ray, FrameStats& stats) const;
     /// Whether a body lies beyond the ray's limit.
     bool is_behind(const Ray& ray, std::uint32_t body) const;

@@ -262,11 +262,20 @@ TEST(RimSine, OfALimitedRayIsTheLeastRatioBeforeTheLimit) {
     EXPECT_GT(cut, 50);
 }
 
+/// The bodies of these numbers only, the last one first.
+PlacedBodies only(const PlacedBodies& placed, const std::vector<std::uint32_t>& bodies) {
+    PlacedBodies some = placed;
+    some.bodies.clear();
+    for (auto b = bodies.rbegin(); b != bodies.rend(); ++b)
+        some.bodies.push_back(placed.bodies[*b]);
+    return some;
+}
+
 void expect_shadows_of_all_bodies(int points) {
-    // Against the least rim over all bodies, one by one: the same bits, since a body that is left
-    // out cannot have a smaller one.
+    // Against the rims of all bodies, one by one: the least where a single body covers a part of
+    // the disc, and where several do, the same bits without all other bodies and in another order.
     Random random(38);
-    int partly = 0, hidden = 0;
+    int partly = 0, hidden = 0, together = 0;
     for (int round = 0; round < 30; ++round) {
         TestScene scene;
         const int count = round < 10 ? round : 300;
@@ -284,11 +293,22 @@ void expect_shadows_of_all_bodies(int points) {
             const auto on = static_cast<std::uint32_t>(i % 7);
             FrameStats stats;
             double least = 1;
+            std::vector<std::uint32_t> covering;
             for (std::uint32_t b = 0; b < placed.bodies.size(); ++b)
-                if (b != on)
-                    least = std::min(least, rim_sine(placed, b, {point, sun.toward}, -1, 1, stats));
-            const double expected =
-                angle == 0 ? (least > 0) : visible_part(std::asin(least) / sun.angle);
+                if (b != on) {
+                    const double sine = rim_sine(placed, b, {point, sun.toward}, -1, 1, stats);
+                    least = std::min(least, sine);
+                    if (std::abs(sine) < sun.cone.sine) covering.push_back(b);
+                }
+            double expected = angle == 0 ? (least > 0) : visible_part(std::asin(least) / sun.angle);
+            if (covering.size() > 1 && expected > 0) {
+                const PlacedBodies some = only(placed, covering);
+                const BodyTree few(some);
+                const double bare = Shadows(some, few).visibility(sun, point, kNoBody, stats);
+                EXPECT_EQ(shadows.visibility(sun, point, on, stats), bare) << round << " " << i;
+                expected = bare;
+                ++together;
+            }
             // asin of the cone's own sine may round to just inside the cone.
             EXPECT_NEAR(shadows.visibility(sun, point, on, stats), expected, angle == 0 ? 0 : 1e-12)
                 << round << " " << i;
@@ -298,10 +318,52 @@ void expect_shadows_of_all_bodies(int points) {
     }
     EXPECT_GT(partly, points * 5 / 4);
     EXPECT_GT(hidden, points * 5 / 4);
+    EXPECT_GT(together, points / 2);
 }
-
 TEST(Shadows, TreeLosesNoBody) { expect_shadows_of_all_bodies(60); }
 TEST(ShadowsSlow, TreeLosesNoBody) { expect_shadows_of_all_bodies(200); }
+
+TEST(SunVisibility, OfSeveralBodiesMatchesRays) {
+    // Balls and boxes that cover parts of the disc together. A body's outline as that of the ball
+    // about it is what is left out for boxes, so that they are large here, and near.
+    Random random(41);
+    constexpr int kCount = 10000;
+    int compared = 0;
+    for (int round = 0; compared < 60; ++round) {
+        const double angle = 3;
+        const Vec4 toward = random_direction(random);
+        TestScene scene;
+        for (int i = 0; i < 3; ++i) {
+            const Vec4 aside = 0.8 * random_direction(random);
+            const Vec4 place = uniform(random, 1.5, 4) * toward + aside;
+            if (round % 2 == 0)
+                scene.add(Hypersphere{uniform(random, 0.1, 0.8)}, place);
+            else
+                scene.add(Hyperplane{-(aside - aside.dot(toward) * toward).normalized(),
+                                     uniform(random, -0.12, 0.05)},
+                          Vec4::Zero());
+        }
+        const PlacedBodies placed = place_bodies(scene.picture(), Vec4::Zero());
+        const Vec4 point = Vec4::Zero();
+        const SunDisc sun = sun_disc(sun_at(toward, angle));
+        FrameStats stats;
+        int covering = 0, hiding = 0;
+        for (std::uint32_t b = 0; b < 3; ++b) {
+            const double sine = rim_sine(placed, b, {point, sun.toward}, -1, 1, stats);
+            covering += std::abs(sine) < 0.5 * sun.cone.sine;
+            hiding += sine <= -sun.cone.sine;
+        }
+        if (covering < 2 || hiding > 0) continue;
+        ++compared;
+        const double visible =
+            Shadows(placed, BodyTree(placed)).visibility(sun, point, kNoBody, stats);
+        const double rays =
+            visible_by_rays(random, toward, angle * kDegree, kCount, [&](const Vec4& d) {
+                return bool(nearest_of_all(placed, {point, d}, scene.settings, stats));
+            });
+        EXPECT_NEAR(visible, rays, 0.06 + 5 * 0.5 / std::sqrt(kCount)) << round;
+    }
+}
 
 TEST(Shadows, SharedSurfacesAreLit) {
     // Bodies that lie in each other with one face or surface in common: points of it, off by
