@@ -31,7 +31,7 @@ SCENES = {
     "balls": HEAD + 'shape = "hypersphere"\nradius = 0.25\ncount = [6, 3, 5, 4]\nspacing = [0.7, 0.7, 0.7, 0.5]\nposition = [0, 1.2, 0, 0.1]\n',
     "boxes": HEAD + 'shape = "hyperbox"\nsize = [0.5, 0.3, 0.4, 0.5]\nrotation = { xy = 20, zw = 30, yz = 50 }\ncount = [6, 3, 5, 4]\n'
     "spacing = [0.7, 0.7, 0.7, 0.5]\nposition = [0, 1.2, 0, 0.1]\n",
-    "capsules": HEAD + 'shape = "hypercapsule"\nradius = 0.08\nlength = 0.7\nrotation = { xy = 40, zw = 30, yz = 70 }\ncount = [6, 3, 5, 4]\n'
+    "capsules": HEAD + 'shape = "hypercapsule"\nradius = 0.08\nheight = 0.7\nrotation = { xy = 40, zw = 30, yz = 70 }\ncount = [6, 3, 5, 4]\n'
     "spacing = [0.7, 0.7, 0.7, 0.5]\nposition = [0, 1.2, 0, 0.1]\n",
     "one ball": HEAD + 'shape = "hypersphere"\nradius = 0.8\ncount = [1, 1, 1, 1]\nspacing = 2\nposition = [0, 1.2, 0, 0]\n',
 }
