@@ -40,6 +40,9 @@ struct Scene {
     std::string hash;       ///< 32 hex digits of `effective`
     std::string motion_hash;  ///< of a trajectory that this program makes of it
 
+    /// The camera follows a body of a scene in which something may move.
+    bool follows() const { return physics && camera_motion.followed; }
+    bool has_moving_camera() const { return !camera_keys.empty() || follows(); }
     CameraPath camera_path() const { return CameraPath(camera, camera_keys, camera_motion.closed); }
 };
 

@@ -109,6 +109,24 @@ std::vector<std::uint64_t> shutter_steps(const Scene& scene, int frame) {
 
 namespace {
 
+/// Frames at which FilmCamera asks where the followed body is, to show the given ones and what is
+/// beside them.
+/// @param frames   ascending
+std::vector<int> frames_of_lag(const Scene& scene, const std::vector<int>& frames) {
+    std::vector<int> asked;
+    const double lag = scene.follows() ? scene.camera_motion.follow_lag : 0;
+    if (lag == 0) return asked;
+    // The frame before, for vectors of motion; and one at or before the window's begin.
+    const double back = std::ceil(lag * scene.render.frames_per_second) + 2;
+    int next = 0;
+    for (const int frame : frames) {
+        for (int k = static_cast<int>(std::max<double>(next, frame - back)); k <= frame; ++k)
+            asked.push_back(k);
+        next = std::max(next, frame + 1);
+    }
+    return asked;
+}
+
 void sort_without_repeats(std::vector<std::uint64_t>& steps) {
     std::sort(steps.begin(), steps.end());
     steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
@@ -122,6 +140,7 @@ std::vector<std::uint64_t> steps_needed(const Scene& scene, const std::vector<in
         steps.push_back(at.step);
         if (at.fraction > 0) steps.push_back(at.step + 1);
     };
+    for (const int frame : frames_of_lag(scene, frames)) add(frame_instant(scene, frame));
     for (int frame : frames) {
         add(frame_instant(scene, frame));
         if (scene.camera.shutter > 0) add(closing_instant(scene, frame));

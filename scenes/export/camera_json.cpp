@@ -20,11 +20,9 @@ OrderedJson json_list(const Vector& v) {
 
 }  // namespace
 
-std::string camera_json(const Scene& scene, const std::string& hash) {
-    const CameraPath path = scene.camera_path();
-    const auto description = [&](int frame) { return path.at(frame_instant(scene, frame).time); };
+std::string camera_json(const Scene& scene, FilmCamera& film_camera, const std::string& hash) {
     const int width = scene.render.width, height = scene.render.height;
-    const render::Camera first(description(0), width, height);
+    const render::Camera first(film_camera.at(0).value(), width, height);
     OrderedJson json = {{"tesserae", hash},
                         {"axes",
                          {{"origin", json_list(first.origin())},
@@ -35,8 +33,9 @@ std::string camera_json(const Scene& scene, const std::string& hash) {
                         {"size", {width, height}},
                         {"frames", OrderedJson::array()}};
     for (int frame = 0; frame < frame_count(scene); ++frame) {
-        const render::CameraDescription at = description(frame);
-        const render::Camera camera(at, width, height);
+        const std::optional<render::CameraDescription> at = film_camera.at(frame);
+        if (!at) continue;
+        const render::Camera camera(*at, width, height);
         const SliceFrame slice(camera, first);
         json["frames"].push_back(
             {{"frame", frame},
@@ -45,7 +44,7 @@ std::string camera_json(const Scene& scene, const std::string& hash) {
              {"right", json_list(slice.direction_to_film(Vec3::UnitX()))},
              {"forward", json_list(slice.direction_to_film(Vec3::UnitY()))},
              {"up", json_list(slice.direction_to_film(Vec3::UnitZ()))},
-             {"field_of_view", at.field_of_view},
+             {"field_of_view", at->field_of_view},
              {"height", first.fourth().dot(camera.origin() - first.origin()) + 0.0}});
     }
     return json.dump(1) + "\n";

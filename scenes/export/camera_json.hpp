@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "scenes/film/film_camera.hpp"
 #include "scenes/scene.hpp"
 
 namespace tesserae::scenes {
@@ -15,6 +16,8 @@ namespace tesserae::scenes {
 ///   frames     of every frame of the scene: frame, time [s], position [m], right, forward, up
 ///              (unit, right-handed), field_of_view (vertical) [degrees]; and height, by which
 ///              the camera is above the first frame's slice along its fourth [m]
-std::string camera_json(const Scene& scene, const std::string& hash);
+/// Where the camera follows a body, frames are left out at which the trajectory does not tell where
+/// that is.
+std::string camera_json(const Scene& scene, FilmCamera& camera, const std::string& hash);
 
 }  // namespace tesserae::scenes

@@ -13,6 +13,7 @@
 #include "scenes/export/mesh_file.hpp"
 #include "scenes/export/section.hpp"
 #include "scenes/film/film.hpp"
+#include "scenes/film/film_camera.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/hash.hpp"
@@ -30,9 +31,8 @@ namespace fs = std::filesystem;
 /// from where it should be, at most.
 constexpr double kBeyondBodies = 1000;
 
-render::Camera camera_of_frame(const Scene& scene, const CameraPath& path, int frame) {
-    return render::Camera(path.at(frame_instant(scene, frame).time), scene.render.width,
-                          scene.render.height);
+render::Camera camera_of_frame(const Scene& scene, FilmCamera& camera, int frame) {
+    return render::Camera(camera.at(frame).value(), scene.render.width, scene.render.height);
 }
 
 /// Of the text, the law of motion, and what only meshes depend on.
@@ -93,7 +93,7 @@ void write_list(const Scene& scene, const fs::path& folder, const std::string& h
 }  // namespace
 
 double usual_extent(const Scene& scene) {
-    const Vec4 eye = camera_of_frame(scene, scene.camera_path(), 0).origin();
+    const Vec4 eye = scene.camera_path().at(0).position;
     double farthest = 1;
     for (BodyId id = 0; id < scene.bodies.size(); ++id) {
         const Shape& shape = scene.bodies.type_of(id).shape;
@@ -112,16 +112,16 @@ ExportReport export_meshes(Scene scene, const std::vector<int>& frames, const fs
     scene.render.channels.motion = false;
     scene.camera.shutter = 0;
     Poses poses(scene, frames, trajectory);
+    FilmCamera camera(scene, &poses);
     const double extent = settings.extent.value_or(usual_extent(scene));
     const std::string hash = export_hash(scene, settings, extent, poses.motion_version());
     create_folder(folder);
     const fs::path camera_file = folder / "camera.json";
     is_exported(camera_file, hash, overwrite);
-    write_file(camera_file, camera_json(scene, hash));
+    write_file(camera_file, camera_json(scene, camera, hash));
 
     const Sections sections(scene.bodies, {settings.tolerance.value_or(0), extent});
-    const CameraPath path = scene.camera_path();
-    const render::Camera first = camera_of_frame(scene, path, 0);
+    const render::Camera first = camera_of_frame(scene, camera, 0);
     ExportReport report;
     Progress progress("exporting", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -133,7 +133,7 @@ ExportReport export_meshes(Scene scene, const std::vector<int>& frames, const fs
             continue;
         }
         const FrameInstant instant = frame_instant(scene, frames[i]);
-        const SliceFrame frame(camera_of_frame(scene, path, frames[i]), first);
+        const SliceFrame frame(camera_of_frame(scene, camera, frames[i]), first);
         const auto meshes = meshes_of(scene, poses.at(instant), sections, frame);
         const MeshFileInfo info{scene.name, hash, frames[i], instant.time, scene.names};
         const MeshCounts counts(meshes, file);

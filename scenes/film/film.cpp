@@ -11,6 +11,7 @@
 #include "render/picture_needs.hpp"
 #include "scenes/farm/join.hpp"
 #include "scenes/film/coast.hpp"
+#include "scenes/film/film_camera.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/process/messages.hpp"
@@ -56,7 +57,7 @@ struct Exposure {
     std::vector<render::ShutterMoment> path;
     std::optional<Moment> after, before;  ///< the frames beside, for vectors of motion
 
-    Exposure(const Scene& scene, const CameraPath& camera, Poses& poses, int frame)
+    Exposure(const Scene& scene, FilmCamera& camera, Poses& poses, int frame)
         : opening(moment(camera, poses, frame_instant(scene, frame))) {
         if (scene.render.channels.motion) {
             after = neighbour(scene, camera, poses, frame, 1);
@@ -87,7 +88,7 @@ struct Exposure {
     }
 
   private:
-    void open_shutter(const Scene& scene, const CameraPath& camera, Poses& poses, int frame) {
+    void open_shutter(const Scene& scene, FilmCamera& camera, Poses& poses, int frame) {
         const double begin = frame_instant(scene, frame).time;
         const double rate = scene.physics ? scene.physics->steps_per_second : 1;
         bool is_still = true;
@@ -109,16 +110,18 @@ struct Exposure {
 
     /// The frame `by` frames on. Where there is none the bodies of this one go on at their
     /// velocities.
-    Moment neighbour(const Scene& scene, const CameraPath& camera, Poses& poses, int frame,
+    Moment neighbour(const Scene& scene, FilmCamera& camera, Poses& poses, int frame,
                      int by) const {
         const FrameInstant at = frame_instant(scene, frame + by);
         if (has_frame(scene, frame + by)) return moment(camera, poses, at);
-        Moment coasting = {{opening.bodies, camera.at(at.time)}};
+        Moment coasting = {{opening.bodies, {}}};
         coast(coasting.bodies, by / scene.render.frames_per_second);
+        coasting.camera = camera.at(at.time, coasting.bodies);
         return coasting;
     }
-    static Moment moment(const CameraPath& camera, Poses& poses, const FrameInstant& instant) {
-        return {{poses.at(instant), camera.at(instant.time)}};
+    static Moment moment(FilmCamera& camera, Poses& poses, const FrameInstant& instant) {
+        const Bodies& bodies = poses.at(instant);
+        return {{bodies, camera.at(instant.time, bodies)}};
     }
 };
 
@@ -180,7 +183,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     const auto begin = std::chrono::steady_clock::now();
     const bool is_changed = !require_folder_of(scene, folder, replace).empty();
     Poses poses(scene, frames, trajectory);
-    const CameraPath camera = scene.camera_path();
+    FilmCamera camera(scene, &poses);
 
     FilmReport report;
     report.frames = folder / "frames";

@@ -61,6 +61,16 @@ int Poses::motion_version() const {
     return trajectory_ ? trajectory_->header().motion_version : kMotionVersion;
 }
 
+std::optional<Vec4> Poses::position(const FrameInstant& instant, BodyId body) const {
+    if (!trajectory_) return before_.position[body];
+    if (!has(instant.step)) return {};
+    const Vec4 before = trajectory_->position(row_of(instant.step), body);
+    if (instant.fraction == 0) return before;
+    if (!has(instant.step + 1)) return {};
+    const Vec4 after = trajectory_->position(row_of(instant.step + 1), body);
+    return before + instant.fraction * (after - before);
+}
+
 const Bodies& Poses::at(const FrameInstant& instant) {
     if (!trajectory_) return before_;
     trajectory_->read_row(row_of(instant.step), before_);

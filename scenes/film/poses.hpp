@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class Poses {
 
     /// Valid until the next call.
     const Bodies& at(const FrameInstant& instant);
+
+    /// Where a body is, as at() has it; none if the trajectory lacks a step for it.
+    std::optional<Vec4> position(const FrameInstant& instant, BodyId body) const;
 
     /// A trajectory holds the step; of a shutter's it may not.
     bool has(std::uint64_t step) const;

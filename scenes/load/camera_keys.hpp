@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "scenes/camera_motion.hpp"
 #include "scenes/camera_orbit.hpp"
 #include "scenes/load/rules.hpp"
 
@@ -15,12 +16,44 @@ constexpr std::string_view kEases[] = {"linear", "in", "out", "in-out"};
 /// A thousand turns [degrees].
 constexpr double kMostAngle = 360'000;
 
+/// The name of a body. Whether there is one is seen once all bodies are there.
+struct BodyName {
+    static constexpr const char* kAllowed = "name of a body; of a lattice NAME.N";
+
+    void read(TableReader& reader, const char* key, std::string& name) const {
+        if (reader.read(key, name) && name.empty()) reader.fail(key, "expected a body's name");
+    }
+    void write(EffectiveWriter& out, const char* key, const std::string& name) const {
+        if (!name.empty()) out.key(key, name);
+    }
+};
+
+constexpr Flag<FollowAxes> kFollowAxes[] = {
+    {"x", &FollowAxes::x}, {"y", &FollowAxes::y}, {"z", &FollowAxes::z}, {"w", &FollowAxes::w}};
+/// All of them are not written.
+struct AxesOrUnwritten : Flags<FollowAxes> {
+    void write(EffectiveWriter& out, const char* key, const FollowAxes& axes) const {
+        if (axes != FollowAxes()) Flags::write(out, key, axes);
+    }
+};
+
 /// [camera]: how it moves beside its keys
 void camera_motion_keys(auto& self, const auto& visit) {
     visit({"closed", "",
            "The path of the keys goes on round: the last is as the first, and the camera passes it "
            "without a kink."},
           self.closed, FalseOrUnwritten{});
+    visit({"follow", "",
+           "The camera and the point that it looks at move as this body moves from where it is at "
+           "time 0.",
+           "none"},
+          self.follow, BodyName{});
+    visit({"follow_axes", "", "It follows along these of the world's axes.",
+           R"(`["x", "y", "z", "w"]`)"},
+          self.follow_axes, AxesOrUnwritten{{kFollowAxes, "expected at least one axis"}});
+    visit({"follow_lag", "s",
+           "It follows the mean of where the body was during so long a time before."},
+          self.follow_lag, RealOrUnwritten{interval_of(Rule::kNonNegative)});
 }
 
 /// orbit = { ... } of a [[camera.key]]

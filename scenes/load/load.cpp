@@ -72,6 +72,7 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     errors.collect([&] { load_overlay(root, origin, scene, out); });
     errors.collect([&] { root.finish(); });
     errors.require_none();
+    find_followed(root, origin, scene);
     require_view(scene, origin);
     // Both refuse what no command could do.
     step_count(scene), frame_count(scene);

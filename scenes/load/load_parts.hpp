@@ -30,6 +30,8 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
                  EffectiveWriter& out);
 
 void load_camera(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
+/// Once all is loaded: which body the camera follows.
+void find_followed(TableReader& root, const Origin& origin, Scene& scene);
 /// Once all is loaded: keys that the file has and this scene does not use, into Scene::unused.
 void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene);
 /// Once all is loaded: that the moving camera has a frame of axes in every frame of the film.

@@ -51,6 +51,25 @@ void check_render(Unused unused, const Scene& scene) {
     unused(one, "filter_width", "one sample, which is at the pixel's centre");
 }
 
+/// Why a body never moves; null: it may.
+const char* why_at_rest(const Scene& scene, BodyId body) {
+    const BodyType& type = scene.bodies.type_of(body);
+    if (!scene.physics) return "a still: without [physics] nothing moves";
+    if (!is_bounded(type.shape)) return "the body is a hyperplane, which never moves";
+    if (type.fixed_position && scene.bodies.velocity[body].isZero(0))
+        return "the body is fixed in its position and has no velocity";
+    return nullptr;
+}
+
+void check_follow(Unused unused, const Scene& scene) {
+    const CameraMotion& motion = scene.camera_motion;
+    unused(!motion.followed, "follow_axes", "there is no follow");
+    unused(!motion.followed, "follow_lag", "there is no follow");
+    if (!motion.followed) return;
+    const char* const why = why_at_rest(scene, *motion.followed);
+    unused(why != nullptr, "follow", why);
+}
+
 void check_material(Unused unused, const render::Material& m) {
     using Kind = render::MaterialKind;
     unused(m.kind != Kind::kGlass, "ior", "kind is not \"glass\"");
@@ -89,6 +108,7 @@ void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene) {
     if (const auto* table = root.table("camera")) {
         TableReader reader(*table, origin, "[camera]");
         Unused unused(reader, lines);
+        check_follow(unused, scene);
         unused(scene.camera.aperture == 0, "focus_distance", "aperture = 0: all is sharp");
         unused(!scene.physics && scene.camera_keys.empty() && scene.camera.shutter > 0, "shutter",
                "a still without [physics] and [[camera.key]]: nothing moves");

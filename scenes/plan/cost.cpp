@@ -12,6 +12,7 @@
 #include "render/measure.hpp"
 #include "render/picture_needs.hpp"
 #include "scenes/film/coast.hpp"
+#include "scenes/film/film_camera.hpp"
 #include "scenes/film/mattes.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/plan/rehearsal.hpp"
@@ -50,16 +51,19 @@ std::vector<TimedBodies> poses_of(const Scene& scene, const fs::path& trajectory
 render::FrameCost cost_of(const Scene& scene, const TimedBodies& at, double seconds,
                           const fs::path& folder) {
     const double rate = scene.render.frames_per_second;
-    const CameraPath path_of_camera = scene.camera_path();
-    const auto camera = [&](double time) { return path_of_camera.at(time); };
-    const render::CameraDescription opening = camera(at.time);
+    FilmCamera camera(scene);
+    const render::CameraDescription opening = camera.at(at.time, at.bodies);
     // How they move meanwhile and where they are a frame later: by their velocities.
     std::vector<render::ShutterMoment> path;
     const double open = scene.camera.shutter / rate;
-    if (open > 0 && scene.physics) path.push_back({open, at.bodies, camera(at.time + open)});
-    for (render::ShutterMoment& moment : path) coast(moment.bodies, open);
-    render::Neighbour next{at.bodies, camera(at.time + 1 / rate)};
+    if (open > 0 && scene.physics) path.push_back({open, at.bodies, {}});
+    for (render::ShutterMoment& moment : path) {
+        coast(moment.bodies, open);
+        moment.camera = camera.at(at.time + open, moment.bodies);
+    }
+    render::Neighbour next{at.bodies, {}};
     if (scene.render.channels.motion) coast(next.bodies, 1 / rate);
+    next.camera = camera.at(at.time + 1 / rate, next.bodies);
     std::optional<render::Mattes> mattes;
     if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, folder);
     const render::Picture picture = {at.bodies,

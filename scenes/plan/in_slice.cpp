@@ -10,6 +10,7 @@
 #include "render/camera/camera.hpp"
 #include "render/scene/placed_bodies.hpp"
 #include "render/scene/slice.hpp"
+#include "scenes/film/film_camera.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/timeline.hpp"
@@ -142,10 +143,11 @@ SliceReport look_at_slice(const Scene& scene, const std::filesystem::path& traje
     for (std::size_t i = 0; i < count; ++i) chosen.push_back(frames[i * frames.size() / count]);
     Poses poses(scene, chosen, trajectory);
     Looks looks(scene);
-    const CameraPath path = scene.camera_path();
+    FilmCamera camera(scene, &poses);
     for (const int frame : chosen) {
         const FrameInstant at = frame_instant(scene, frame);
-        looks.add(at.time, poses.at(at), path.at(at.time));
+        const Bodies& bodies = poses.at(at);
+        looks.add(at.time, bodies, camera.at(at.time, bodies));
     }
     return std::move(looks).report();
 }

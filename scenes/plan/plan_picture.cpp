@@ -1,6 +1,7 @@
 #include "scenes/plan/plan_picture.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "core/error.hpp"
@@ -66,9 +67,24 @@ void decide_light(const Scene& scene, const render::PictureNeeds& needs, Plan& p
     }
 }
 
+/// How the camera moves.
+std::string text_of_motion(const Scene& scene) {
+    const CameraMotion& motion = scene.camera_motion;
+    std::string text = fmt::format("{} keys", scene.camera_keys.size());
+    if (motion.closed) text += " that go on round";
+    if (!scene.follows()) return text;
+    text = scene.camera_keys.empty() ? "" : text + ", and ";
+    text += fmt::format("it follows \"{}\"", motion.follow);
+    if (motion.follow_lag > 0)
+        text += fmt::format(" by its mean way over {} s: frames before are needed too, {} of them",
+                            motion.follow_lag,
+                            std::ceil(motion.follow_lag * scene.render.frames_per_second));
+    return text;
+}
+
 void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& plan) {
     const render::CameraDescription& c = scene.camera;
-    const bool is_moving = !scene.camera_keys.empty();
+    const bool is_moving = scene.has_moving_camera();
     const int samples = scene.render.least_samples(), most = scene.render.most_samples();
     plan.decide("lens", needs.lens, fmt::format("aperture = {}", c.aperture),
                 "aperture = 0: a pinhole");
@@ -92,8 +108,7 @@ void decide_camera(const Scene& scene, const render::PictureNeeds& needs, Plan& 
                     scene.render.ghosts == render::GhostsIn::kOver ? "over previews and films"
                                                                    : "in layer ghost"),
         "ghost_depth = 0");
-    plan.decide("moving camera", is_moving, fmt::format("{} keys", scene.camera_keys.size()),
-                "no [[camera.key]]");
+    plan.decide("moving camera", is_moving, text_of_motion(scene), "no [[camera.key]]");
     plan.decide("moving noise", needs.moving_noise, "every frame has random numbers of its own",
                 scene.render.lock_noise ? "lock_noise = true: every frame has those of frame 0"
                                         : "nothing in the picture is random");

@@ -82,16 +82,25 @@ struct Selection {
     Handle memory, file;
 };
 
-Selection select_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count) {
+/// @param begin, count   along the first axes; all along the others
+Selection select(const Handle& dataset, const Extent& begin, const Extent& count) {
     Extent extent = extent_of(dataset);
     Extent start(extent.size(), 0);
-    if (extent.empty() || begin + count > extent[0]) throw Failure("rows beyond the dataset's end");
-    start[0] = begin;
-    extent[0] = count;
+    if (extent.size() < begin.size()) throw Failure("a dataset of too few axes");
+    for (std::size_t axis = 0; axis < begin.size(); ++axis) {
+        if (begin[axis] + count[axis] > extent[axis])
+            throw Failure("rows beyond the dataset's end");
+        start[axis] = begin[axis];
+        extent[axis] = count[axis];
+    }
     Selection selection{dataspace(extent), {H5Dget_space(dataset.get()), H5Sclose}};
     checked(H5Sselect_hyperslab(selection.file.get(), H5S_SELECT_SET, start.data(), nullptr,
                                 extent.data(), nullptr));
     return selection;
+}
+
+Selection select_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count) {
+    return select(dataset, {begin}, {count});
 }
 
 }  // namespace
@@ -313,6 +322,13 @@ void read_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, 
     const Selection rows = select_rows(dataset, begin, count);
     checked(H5Dread(dataset.get(), memory_type, rows.memory.get(), rows.file.get(), H5P_DEFAULT,
                     values));
+}
+
+void read_item(const Handle& dataset, std::uint64_t row, std::uint64_t item, hid_t memory_type,
+               void* values) {
+    const Selection one = select(dataset, {row, item}, {1, 1});
+    checked(
+        H5Dread(dataset.get(), memory_type, one.memory.get(), one.file.get(), H5P_DEFAULT, values));
 }
 
 void write_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,

@@ -107,6 +107,9 @@ std::uint64_t storage_size(const Handle& dataset);
 /// Items begin <= i < begin + count along the first axis, all along the others; at least one.
 void read_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,
                void* values);
+/// The item of that index along the second axis, of one row.
+void read_item(const Handle& dataset, std::uint64_t row, std::uint64_t item, hid_t memory_type,
+               void* values);
 void write_rows(const Handle& dataset, std::uint64_t begin, std::uint64_t count, hid_t memory_type,
                 const void* values);
 /// Sets the first extent, if it is not that.

@@ -131,6 +131,9 @@ class TrajectoryReader {
     /// file's. Values that are not finite, or rotors not of length 1, are an error.
     void read_row(std::uint64_t row, Bodies& bodies) const;
 
+    /// Of one body, without reading the others.
+    Vec4 position(std::uint64_t row, BodyId body) const;
+
     /// All that was appended besides the states, of every row.
     std::vector<StepFacts> facts() const;
 

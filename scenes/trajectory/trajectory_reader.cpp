@@ -99,6 +99,18 @@ void TrajectoryReader::read_row(std::uint64_t row, Bodies& bodies) const {
     });
 }
 
+Vec4 TrajectoryReader::position(std::uint64_t row, BodyId body) const {
+    TSR_ASSERT(row < rows() && body < file_->header.bodies);
+    Vec4 position;
+    file_->reading([&] {
+        hdf5::read_item(file_->data.state[0], row, body, H5T_NATIVE_DOUBLE, position.data());
+        if (!position.allFinite())
+            throw hdf5::Failure(fmt::format("step {}: {} of body {} is not finite",
+                                            file_->steps[row], kStateElements[0].name, body));
+    });
+    return position;
+}
+
 std::vector<StepFacts> TrajectoryReader::facts() const {
     const File& f = *file_;
     std::vector<StepFacts> facts(rows());

@@ -158,7 +158,7 @@ std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moment
     for (const ViewMoment& moment : moments) json["times"].push_back(moment.time);
     // A camera that stands still is there once.
     json["cameras"] =
-        cameras_of(scene.camera_keys.empty() ? std::vector{moments.front()} : moments);
+        cameras_of(scene.has_moving_camera() ? moments : std::vector{moments.front()});
     json["key_times"] = Json::array();
     for (const CameraKey& key : scene.camera_keys) json["key_times"].push_back(key.time);
     json["names"] = Json::array();

@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
 #include "render/camera/camera.hpp"
-#include "scenes/camera_path.hpp"
+#include "scenes/film/film_camera.hpp"
 #include "scenes/film/poses.hpp"
 #include "scenes/process/memory.hpp"
 #include "scenes/process/progress.hpp"
@@ -31,19 +31,25 @@ class ViewPoses {
         : bodies_(scene.bodies) {
         const std::vector<int> frames =
             asked.empty() ? parse_frames("", frame_count(scene)) : asked;
-        const CameraPath path = scene.camera_path();
         if (!trajectory.empty()) rows_ = std::make_unique<TrajectoryReader>(trajectory);
         if (!rows_ || !asked.empty() || has_steps_of(scene, frames)) {
             rows_.reset();
             poses_ = std::make_unique<Poses>(scene, frames, trajectory);
             for (const int frame : frames) instants_.push_back(frame_instant(scene, frame));
-            for (const FrameInstant& at : instants_) add_moment(path, at.time);
+            FilmCamera camera(scene, poses_.get());
+            for (const int frame : frames)
+                moments_.push_back({frame_instant(scene, frame).time, camera.at(frame).value()});
             return;
         }
         if (rows_->rows() == 0)
             throw InputError(fmt::format("{}: holds no step yet", trajectory.string()));
-        Poses(scene, {}, trajectory);  // checks that it is of this scene's motion
-        for (const double time : rows_->times()) add_moment(path, time);
+        const Poses checked(scene, {}, trajectory);  // that it is of this scene's motion
+        FilmCamera camera(scene, &checked);
+        for (std::size_t row = 0; row < rows_->rows(); ++row) {
+            if (scene.follows()) rows_->read_row(row, bodies_);
+            const double time = rows_->times()[row];
+            moments_.push_back({time, camera.at(time, bodies_)});
+        }
     }
 
     const std::vector<ViewMoment>& moments() const { return moments_; }
@@ -64,9 +70,6 @@ class ViewPoses {
                 return false;
         }
         return true;
-    }
-    void add_moment(const CameraPath& path, double time) {
-        moments_.push_back({time, path.at(time)});
     }
 
     Bodies bodies_;

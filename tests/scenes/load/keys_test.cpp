@@ -69,6 +69,7 @@ std::string other(const std::vector<Bivector>&, Turns) {
 std::string other(const render::Color&, ColorOrUnwritten) { return "[0.25, 0.5, 1]"; }
 std::string other(const std::string&, OneLine) { return "\"other\""; }
 std::string other(const render::Color&, AlbedoOf) { return "[0.25, 0.5, 1]"; }
+std::string other(const std::string&, BodyName) { return "\"b\""; }
 std::string other(bool value, FalseOrUnwritten) { return toml_text(!value); }
 std::string other(std::integral auto value, IntegerOrUnwritten) { return toml_text(value + 1); }
 std::string other(bool value) { return toml_text(!value); }
