@@ -73,16 +73,22 @@ Vec4 rolled(const CameraDescription& camera, double angle) {
 
 double smooth_step(double t) { return t * t * (3 - 2 * t); }
 
+struct TimedView {
+    double time;
+    View view;
+};
+
 /// Adds moments after `a` to `b`, so many that the view turns little between them.
-void refine(const CarriedUp::Path& path, double a, double b, int halvings,
+void refine(const CarriedUp::Path& path, const TimedView& a, const TimedView& b, int halvings,
             std::vector<double>& times) {
-    const double middle = 0.5 * (a + b);
-    if (halvings < kMostHalvings && a < middle && middle < b &&
-        View(path(a)).turn_to(View(path(b))) > kSmallTurn) {
+    const double time = 0.5 * (a.time + b.time);
+    if (halvings < kMostHalvings && a.time < time && time < b.time &&
+        a.view.turn_to(b.view) > kSmallTurn) {
+        const TimedView middle = {time, View(path(time))};
         refine(path, a, middle, halvings + 1, times);
         refine(path, middle, b, halvings + 1, times);
     } else {
-        times.push_back(b);
+        times.push_back(b.time);
     }
 }
 
@@ -101,7 +107,12 @@ CarriedUp::CarriedUp(const Path& path, std::span<const double> given) {
     if (given.empty()) return;
     first_ = given.front(), last_ = given.back();
     std::vector<double> times = {first_};
-    for (std::size_t i = 1; i < given.size(); ++i) refine(path, given[i - 1], given[i], 0, times);
+    TimedView before = {first_, View(path(first_))};
+    for (const double time : given.subspan(1)) {
+        const TimedView at = {time, View(path(time))};
+        refine(path, before, at, 0, times);
+        before = at;
+    }
     for (std::size_t i = 0; i < times.size();) {
         std::size_t end = i;
         bool is_passage = false;

@@ -15,12 +15,7 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr Ease kAllEases[] = {Ease::kLinear, Ease::kIn, Ease::kOut, Ease::kInOut};
-constexpr double kDegree = std::numbers::pi / 180;
-
-render::CameraDescription camera_at(const render::CameraDescription& still,
-                                    std::span<const CameraKey> keys, double time) {
-    return CameraPath(still, keys).at(time);
-}
+constexpr double kRadiansADegree = std::numbers::pi / 180;
 
 /// The part of the way, from the integral of a speed that is even, grows, shrinks, or does both.
 double part_of_way(Ease ease, double t) {
@@ -48,10 +43,10 @@ std::vector<CameraKey> orbit_of(const CameraOrbit& orbit, const Vec4& from, Ease
 }
 
 /// By the rotor exp(-B/2) of the plane's bivector, as bodies are turned.
-Vec4 turned(const Vec4& from, const Vec4& about, std::size_t plane, double degrees) {
+Vec4 by_rotor(const Vec4& from, const Vec4& about, std::size_t plane, double degrees) {
     Bivector b;
     double* const parts[] = {&b.xy, &b.xz, &b.xw, &b.yz, &b.yw, &b.zw};
-    *parts[plane] = degrees * kDegree;
+    *parts[plane] = degrees * kRadiansADegree;
     return about + to_matrix(exp(-0.5 * b)) * (from - about);
 }
 
@@ -68,7 +63,8 @@ TEST(CameraOrbit, IsRoundInAllPlanesWithEaseAndSeveralTurns) {
                     const Vec4 at = path.at(0.5 + 2 * t).position;
                     // Rounding: of the radius, and of an angle of up to four turns.
                     EXPECT_NEAR((at - about).norm(), (from - about).norm(), 1e-14);
-                    const Vec4 expected = turned(from, about, plane, angle * part_of_way(ease, t));
+                    const Vec4 expected =
+                        by_rotor(from, about, plane, angle * part_of_way(ease, t));
                     EXPECT_LT((at - expected).norm(), 5e-13)
                         << "plane " << plane << " angle " << angle << " t " << t;
                 }
@@ -78,7 +74,7 @@ TEST(CameraOrbit, IsRoundInAllPlanesWithEaseAndSeveralTurns) {
 TEST(CameraOrbit, HasOneSpeedUnlessItEases) {
     const Vec4 from(0, 2, -8, 0);
     const CameraOrbit orbit = {Vec4(0, 2, 0, 0), 1, 270};
-    const double h = 1e-4, speed = 8 * 270 * kDegree / 2;
+    const double h = 1e-4, speed = 8 * 270 * kRadiansADegree / 2;
     for (const Ease ease : kAllEases) {
         const CameraPath path({}, orbit_of(orbit, from, ease));
         for (double t = 0.6; t < 2.4; t += 0.1) {
@@ -102,8 +98,8 @@ TEST(CameraOrbit, OfFourQuartersIsOneTurn) {
     keys[0].position = Vec4(0, 2, -8, 0);
     const CameraPath path({}, keys);
     for (double t = 0; t < 4; t += 0.01)
-        EXPECT_LT((path.at(t).position -
-                   Vec4(8 * std::sin(90 * t * kDegree), 2, -8 * std::cos(90 * t * kDegree), 0))
+        EXPECT_LT((path.at(t).position - Vec4(8 * std::sin(90 * t * kRadiansADegree), 2,
+                                              -8 * std::cos(90 * t * kRadiansADegree), 0))
                       .norm(),
                   1e-13);
     EXPECT_EQ(path.at(4).position, *keys[0].position);
@@ -118,20 +114,22 @@ TEST(CameraOrbit, BeginsWhereTheKeyBeforeLeftTheCamera) {
     keys[0].time = 2;
     keys[0].orbit = quarter;
     // Without a key before it: from [camera], in the time from 0 on.
-    EXPECT_EQ(camera_at(still, keys, -1).position, still.position);
+    EXPECT_EQ(CameraPath(still, keys).at(-1).position, still.position);
     EXPECT_LT(
-        (camera_at(still, keys, 1).position - turned(still.position, Vec4::Zero(), 1, 45)).norm(),
+        (CameraPath(still, keys).at(1).position - by_rotor(still.position, Vec4::Zero(), 1, 45))
+            .norm(),
         1e-14);
     // A key before that says nothing of the position: it stands still until then.
     CameraKey first;
     first.time = 1;
     first.look_at = Vec4(0, 1, 0, 0);
     keys.insert(keys.begin(), first);
-    EXPECT_EQ(camera_at(still, keys, 1).position, still.position);
+    EXPECT_EQ(CameraPath(still, keys).at(1).position, still.position);
     EXPECT_LT(
-        (camera_at(still, keys, 1.5).position - turned(still.position, Vec4::Zero(), 1, 45)).norm(),
+        (CameraPath(still, keys).at(1.5).position - by_rotor(still.position, Vec4::Zero(), 1, 45))
+            .norm(),
         1e-14);
-    EXPECT_EQ(camera_at(still, keys, 1.5).look_at, *first.look_at);
+    EXPECT_EQ(CameraPath(still, keys).at(1.5).look_at, *first.look_at);
 }
 
 TEST(CameraOrbit, MeetsOtherKeysWithoutAKink) {
@@ -156,13 +154,13 @@ TEST(CameraOrbit, MeetsOtherKeysWithoutAKink) {
 TEST(CameraOrbit, IsReadFromASceneAndWrittenBack) {
     const std::string text =
         "[physics]\nduration = 2\n[camera]\nposition = [0, 0, -5, 0]\n[[camera.key]]\ntime = 2\n"
-        "orbit = { about = [0, 1, 0, 0], plane = \"zw\", angle = 450 }\n";
+        "orbit = { about = [0, 1, 0, 0], plane = \"xz\", angle = 450 }\n";
     const Scene scene = load_text(text + "ease = \"in-out\"\n");
     ASSERT_EQ(scene.camera_keys.size(), 1u);
     const CameraKey& key = scene.camera_keys[0];
     ASSERT_TRUE(key.orbit);
     EXPECT_EQ(key.orbit->about, Vec4(0, 1, 0, 0));
-    EXPECT_EQ(key.orbit->plane, 5u);
+    EXPECT_EQ(key.orbit->plane, 1u);
     EXPECT_EQ(key.orbit->angle, 450);
     EXPECT_EQ(key.ease, Ease::kInOut);
     EXPECT_EQ(load_text(scene.effective).effective, scene.effective);

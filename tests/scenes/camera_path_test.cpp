@@ -50,17 +50,24 @@ std::vector<CameraKey> random_keys(Random& random, int count) {
 
 TEST(CameraPath, MeetsItsKeysAndStandsStillOutside) {
     Random random(1);
-    const auto keys = random_keys(random, 6);
+    auto keys = random_keys(random, 6);
+    for (CameraKey& key : keys) {
+        // Far from looking along up.
+        key.look_at = *key.position + 10 * Vec4::UnitZ();
+        key.up = (6 * Vec4::UnitY() + random_vector(random)).normalized();
+        key.fourth = (6 * Vec4::UnitW() + random_vector(random)).normalized();
+    }
+    const CameraPath path({}, keys);
     for (const CameraKey& key : keys) {
-        const auto camera = camera_at({}, keys, key.time);
+        const auto camera = path.at(key.time);
         EXPECT_LT((camera.position - *key.position).norm(), kRounding);
         EXPECT_LT((camera.look_at - *key.look_at).norm(), kRounding);
         EXPECT_LT((camera.up - *key.up).norm(), kRounding);
         EXPECT_LT((camera.fourth - *key.fourth).norm(), kRounding);
         EXPECT_NEAR(camera.field_of_view, *key.field_of_view, kRounding * 90);
     }
-    EXPECT_EQ(camera_at({}, keys, -5).position, *keys.front().position);
-    EXPECT_EQ(camera_at({}, keys, 1e9).fourth, *keys.back().fourth);
+    EXPECT_EQ(path.at(-5).position, *keys.front().position);
+    EXPECT_EQ(path.at(1e9).fourth, *keys.back().fourth);
 }
 
 TEST(CameraPath, TwoKeysMoveEvenly) {
@@ -68,8 +75,9 @@ TEST(CameraPath, TwoKeysMoveEvenly) {
     const auto keys = random_keys(random, 2);
     const CameraKey &a = keys[0], &b = keys[1];
     const double angle = std::acos(a.fourth->dot(*b.fourth));
+    const CameraPath path({}, keys);
     for (const double t : {0.1, 0.25, 0.5, 0.8}) {
-        const auto camera = camera_at({}, keys, a.time + t * (b.time - a.time));
+        const auto camera = path.at(a.time + t * (b.time - a.time));
         EXPECT_LT((camera.position - (*a.position + t * (*b.position - *a.position))).norm(),
                   kRounding);
         // Along the great arc, by its part of the angle.
@@ -88,20 +96,22 @@ TEST(CameraPath, FollowsParabolasAndSteadyTurnsThroughUnevenKeys) {
         key.position = parabola(key.time);
         key.fourth = turned(key.time);
     }
+    const CameraPath path({}, keys);
     // The parabola between inner keys, where the slopes have neighbours on both sides.
     for (double t = 0.7; t < 2.5; t += 0.1)
-        EXPECT_LT((camera_at({}, keys, t).position - parabola(t)).norm(), kRounding) << t;
+        EXPECT_LT((path.at(t).position - parabola(t)).norm(), kRounding) << t;
     for (double t = 0; t < 3; t += 0.1)
-        EXPECT_LT((camera_at({}, keys, t).fourth - turned(t)).norm(), kRounding) << t;
+        EXPECT_LT((path.at(t).fourth - turned(t)).norm(), kRounding) << t;
 }
 
 TEST(CameraPath, HasNoKinks) {
     Random random(3);
     const auto keys = random_keys(random, 7);
+    const CameraPath path({}, keys);
     // Second differences of a smooth path fall with the square of the step, of a kink only with
     // the step: halving it tells them apart.
     const auto bend = [&](const CameraKey& key, double h) {
-        const auto at = [&](double t) { return camera_at({}, keys, t); };
+        const auto at = [&](double t) { return path.at(t); };
         const auto a = at(key.time - h), b = at(key.time), c = at(key.time + h);
         return (a.position - 2 * b.position + c.position).norm() +
                (a.fourth - 2 * b.fourth + c.fourth).norm();
@@ -116,7 +126,8 @@ TEST(CameraPath, StaysBetweenEqualKeys) {
     keys[0].position = Vec4(0, 0, 0, 0);
     keys[1].position = keys[2].position = rest;
     keys[3].position = Vec4(5, 0, 0, 0);
-    for (double t = 1; t <= 2; t += 0.125) EXPECT_EQ(camera_at({}, keys, t).position, rest);
+    const CameraPath path({}, keys);
+    for (double t = 1; t <= 2; t += 0.125) EXPECT_EQ(path.at(t).position, rest);
 }
 
 TEST(CameraPath, DoesNotDependOnTheAxes) {
@@ -124,14 +135,15 @@ TEST(CameraPath, DoesNotDependOnTheAxes) {
     const auto keys = random_keys(random, 5);
     const Mat4 turn = to_matrix(exp(Bivector{0.3, -1, 2, 0.7, 0.1, -0.4}));
     auto turned = keys;
-    for (CameraKey& key : turned) {
-        key.position = turn * *key.position;
-        key.up = turn * *key.up;
-    }
+    for (CameraKey& key : turned)
+        for (auto part :
+             {&CameraKey::position, &CameraKey::look_at, &CameraKey::up, &CameraKey::fourth})
+            key.*part = turn * *(key.*part);
+    const CameraPath path({}, keys), turned_path({}, turned);
     for (double t = 0; t < keys.back().time; t += 0.07) {
-        const auto a = camera_at({}, keys, t), b = camera_at({}, turned, t);
+        const auto a = path.at(t), b = turned_path.at(t);
         EXPECT_LT((turn * a.position - b.position).norm(), 1e-11);
-        EXPECT_LT((turn * a.up - b.up).norm(), 1e-11);
+        EXPECT_LT((turn * a.up - b.up).norm(), 1e-9);
         EXPECT_NEAR(a.up.norm(), 1, kRounding);
     }
 }

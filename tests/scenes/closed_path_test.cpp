@@ -27,12 +27,12 @@ std::vector<CameraKey> round_trip() {
     return keys;
 }
 
-double change(const render::CameraDescription& a, const render::CameraDescription& b) {
+double view_change(const render::CameraDescription& a, const render::CameraDescription& b) {
     return (a.position - b.position).norm() + (a.look_at - b.look_at).norm() +
            (a.fourth - b.fourth).norm() + std::abs(a.field_of_view - b.field_of_view);
 }
 
-render::CameraDescription slope(const CameraPath& path, double from, double to) {
+render::CameraDescription view_rate(const CameraPath& path, double from, double to) {
     const auto a = path.at(from), b = path.at(to);
     render::CameraDescription d;
     d.position = (b.position - a.position) / (to - from);
@@ -46,13 +46,13 @@ TEST(ClosedPath, PassesItsJointWithoutAKink) {
     const std::vector<CameraKey> keys = round_trip();
     const CameraPath closed({}, keys, true), open({}, keys);
     const double h = 1e-5;
-    EXPECT_LT(change(closed.at(0.5), closed.at(6)), 1e-12);
+    EXPECT_LT(view_change(closed.at(0.5), closed.at(6)), 1e-12);
     // The velocity changes by the acceleration times h, some 20 times h here.
-    EXPECT_LT(change(slope(closed, 6 - h, 6), slope(closed, 0.5, 0.5 + h)), 1e-3);
+    EXPECT_LT(view_change(view_rate(closed, 6 - h, 6), view_rate(closed, 0.5, 0.5 + h)), 1e-3);
     // It is not at rest there.
-    EXPECT_GT(slope(closed, 6 - h, 6).position.norm(), 1);
+    EXPECT_GT(view_rate(closed, 6 - h, 6).position.norm(), 1);
     // An open one has a kink.
-    EXPECT_GT(change(slope(open, 6 - h, 6), slope(open, 0.5, 0.5 + h)), 1);
+    EXPECT_GT(view_change(view_rate(open, 6 - h, 6), view_rate(open, 0.5, 0.5 + h)), 1);
     // It goes through its keys.
     for (const CameraKey& key : keys)
         EXPECT_LT((closed.at(key.time).position - *key.position).norm(), 1e-12);
@@ -62,11 +62,12 @@ TEST(ClosedPath, GoesOnRoundBeforeAndAfter) {
     const CameraPath path({}, round_trip(), true);
     const double h = 1e-5;
     for (const double t : {0.5, 1.0, 2.5, 5.9}) {
-        EXPECT_LT(change(path.at(t), path.at(t + 5.5)), 1e-11) << t;
-        EXPECT_LT(change(path.at(t), path.at(t - 11)), 1e-11) << t;
+        EXPECT_LT(view_change(path.at(t), path.at(t + 5.5)), 1e-11) << t;
+        EXPECT_LT(view_change(path.at(t), path.at(t - 11)), 1e-11) << t;
     }
     for (const double joint : {0.5, 6.0, 11.5})
-        EXPECT_LT(change(slope(path, joint - h, joint), slope(path, joint, joint + h)), 1e-3);
+        EXPECT_LT(view_change(view_rate(path, joint - h, joint), view_rate(path, joint, joint + h)),
+                  1e-3);
 }
 
 /// Where the first key is does not matter.
@@ -79,7 +80,8 @@ TEST(ClosedPath, HasNoFavouredKey) {
         later.back().time += 5.5;
     }
     const CameraPath same({}, later, true);
-    for (double t = 2; t < 7.5; t += 0.05) EXPECT_LT(change(path.at(t), same.at(t)), 1e-11) << t;
+    for (double t = 2; t < 7.5; t += 0.05)
+        EXPECT_LT(view_change(path.at(t), same.at(t)), 1e-11) << t;
 }
 
 TEST(ClosedPath, MayBeMadeOfOrbits) {
@@ -91,23 +93,24 @@ TEST(ClosedPath, MayBeMadeOfOrbits) {
     EXPECT_EQ(open_ends({}, keys), "");
     const CameraPath path({}, keys, true);
     const double h = 1e-6;
-    EXPECT_LT(change(slope(path, 2 - h, 2), slope(path, 2, 2 + h)), 1e-3);
+    EXPECT_LT(view_change(view_rate(path, 2 - h, 2), view_rate(path, 2, 2 + h)), 1e-3);
     // Half of it an orbit, half a spline.
     keys[2].orbit.reset();
     keys[2].position = keys[0].position;
     const CameraPath half({}, keys, true);
     for (const double joint : {0.0, 1.0, 2.0})
-        EXPECT_LT(change(slope(half, joint - h, joint), slope(half, joint, joint + h)), 1e-3);
+        EXPECT_LT(view_change(view_rate(half, joint - h, joint), view_rate(half, joint, joint + h)),
+                  1e-3);
 }
 
-constexpr const char* kRound =
+constexpr const char* kRoundTrip =
     "[physics]\nduration = 2\n[camera]\nclosed = true\n"
     "[[camera.key]]\ntime = 0\nposition = [0, 2, -8, 0]\n"
     "[[camera.key]]\ntime = 1\nposition = [4, 2, -8, 0]\n";
 
 TEST(ClosedPath, IsReadAndWrittenBack) {
     const std::string text =
-        std::string(kRound) + "[[camera.key]]\ntime = 2\nposition = [0, 2, -8, 0]\n";
+        std::string(kRoundTrip) + "[[camera.key]]\ntime = 2\nposition = [0, 2, -8, 0]\n";
     const Scene scene = load_text(text);
     EXPECT_TRUE(scene.camera_motion.closed);
     EXPECT_EQ(load_text(scene.effective).hash, scene.hash);
@@ -120,8 +123,8 @@ TEST(ClosedPath, SaysWhatIsOpen) {
         for (const char* word : words)
             EXPECT_NE(error.find(word), std::string::npos) << word << " in: " << error;
     };
-    expect(kRound, {"test.toml:4:10", "ends with the position [4, 2, -8, 0]",
-                    "begins with [0, 2, -8, 0]", "that has the position of the first"});
+    expect(kRoundTrip, {"test.toml:4:10", "ends with the position [4, 2, -8, 0]",
+                        "begins with [0, 2, -8, 0]", "that has the position of the first"});
     expect("[camera]\nclosed = true\n", {"2:10", "two [[camera.key]] or more"});
     expect(
         "[camera]\nclosed = true\n[[camera.key]]\ntime = 1\n"
