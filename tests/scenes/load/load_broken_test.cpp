@@ -272,15 +272,15 @@ const std::vector<Broken>& broken_scenes() {
          "3:9",
          {"orbit: about is missing"}},
         {"[[camera.key]]\ntime = 1\norbit = { about = [0, 0, 0, 0], plane = \"zx\", angle = 90 }\n",
-         "3:42",
+         "3:41",
          {"plane = \"zx\"", "\"xz\""}},
         {"[[camera.key]]\ntime = 1\n"
          "orbit = { about = [0, 0, 0, 0], plane = \"xz\", angle = 400000 }\n",
-         "3:56",
+         "3:55",
          {"angle = 400000", "360000"}},
         {"[[camera.key]]\ntime = 1\n"
          "orbit = { about = [0, 0, 0, 0], plane = \"xz\", angel = 90 }\n",
-         "3:48",
+         "3:47",
          {"did you mean \"angle\"?"}},
         {"[[camera.key]]\ntime = 1\nposition = [0, 0, -5, 0]\n"
          "orbit = { about = [0, 0, 0, 0], plane = \"xz\", angle = 90 }\n",
