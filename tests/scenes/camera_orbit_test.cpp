@@ -169,5 +169,16 @@ TEST(CameraOrbit, IsReadFromASceneAndWrittenBack) {
     EXPECT_NE(load_text(text).hash, scene.hash);
 }
 
+TEST(CameraOrbit, AloneHasAnEase) {
+    const std::string without =
+        error_of("[[camera.key]]\ntime = 1\nposition = [0, 0, -5, 0]\nease = \"in\"\n");
+    EXPECT_TRUE(without.starts_with("test.toml:4:8: ")) << without;
+    EXPECT_NE(without.find("this key has none"), std::string::npos) << without;
+    const std::string misspelt = error_of(
+        "[[camera.key]]\ntime = 1\nease = \"inout\"\n"
+        "orbit = { about = [0, 0, 0, 0], plane = \"xz\", angle = 90 }\n");
+    EXPECT_NE(misspelt.find("did you mean \"in-out\"?"), std::string::npos) << misspelt;
+}
+
 }  // namespace
 }  // namespace tesserae::scenes

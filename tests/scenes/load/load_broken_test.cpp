@@ -292,13 +292,6 @@ const std::vector<Broken>& broken_scenes() {
         {"[[camera.key]]\ntime = 1\norbit = { about = [0, 2, 0, 0], plane = \"xw\", angle = 90 }\n",
          "3:9",
          {"on the axis", "[0, 2, -8, 0]", "an about beside it"}},
-        {"[[camera.key]]\ntime = 1\nposition = [0, 0, -5, 0]\nease = \"in\"\n",
-         "4:8",
-         {"this key has none"}},
-        {"[[camera.key]]\ntime = 1\n"
-         "orbit = { about = [0, 0, 0, 0], plane = \"xz\", angle = 90 }\nease = \"inout\"\n",
-         "4:8",
-         {"did you mean \"in-out\"?"}},
         {"[render]\nfilter = \"gausian\"\n", "2:10", {"did you mean \"gaussian\"?"}},
         {"[render]\nfilter_width = 0\n", "2:16", {"filter_width = 0"}},
         {"[render]\nmax_distance = -1\n", "2:16", {"max_distance = -1"}},
