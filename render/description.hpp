@@ -123,6 +123,10 @@ struct Channels {
 /// Whether ghosts are a layer of the image only, or laid over previews and films too.
 enum class GhostsIn { kLayer, kOver };
 
+/// Width of previews where a scene does not say it, of pictures that are as wide or wider: what a
+/// screen shows [pixels].
+constexpr int kPreviewWidth = 1920;
+
 /// Whether view rays that meet nothing bring the sky's light.
 enum class Sky { kOpaque, kTransparent };
 
@@ -152,7 +156,8 @@ struct Settings {
     bool lock_noise = false;  ///< every frame has the random numbers of frame 0
     Channels channels;
     Compression compression = Compression::kZip;
-    double exposure = 0;  ///< previews only [stops]
+    int preview_size = 0;  ///< width of previews [pixels]; 0: kPreviewWidth, or the picture's
+    double exposure = 0;   ///< previews only [stops]
     /// Bodies that the slice misses by less than this are ghosts, see Ghosts [m]; 0: none.
     double ghost_depth = 0;
     GhostsIn ghosts = GhostsIn::kLayer;

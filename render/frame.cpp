@@ -125,7 +125,8 @@ std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& i
     const Crop window = settings.window();
     const Camera camera(picture.camera, settings.width, settings.height);
     TilePacker packer(settings, window, info, picture.camera, camera, picture.mattes);
-    const PartInfo about = {part, window, settings.sky, packer.tiles(), packer.file_header()};
+    const PartInfo about = {
+        part, window, settings.sky, settings.preview_size, packer.tiles(), packer.file_header()};
     if (is_part_done(about, file, overwrite)) return {};
 
     const FrameScene scene(picture, true);

@@ -42,7 +42,7 @@ struct Picture {
     int frame = 0;  ///< its number: frames have random numbers of their own
     /// Of the same bodies: for Channels::motion only. Without one its vectors are 0.
     const Neighbour *next = nullptr, *last = nullptr;
-    const Mattes* mattes = nullptr;  ///< where Channels::cryptomatte is asked for
+    const Mattes* mattes = nullptr;       ///< where Channels::cryptomatte is asked for
     std::span<const Stamp> overlay = {};  ///< lies over the preview
 };
 

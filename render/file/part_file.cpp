@@ -24,13 +24,13 @@ namespace {
 /// StampHeader and colours; the checksum of all bytes before it. Numbers are little-endian.
 constexpr std::array<char, 16> kMagic = {"tesserae tiles4"};
 constexpr std::uint64_t kNoMore = ~std::uint64_t{0};
-/// As Settings allow it.
-constexpr int kMostPixels = 65536;
+/// As Settings allow it: along a side of a frame, in a tile.
+constexpr int kMostPixels = 65536, kMostPixelsOfTile = 512 * 512;
 
 struct PartHeader {
     std::int32_t number = 0, count = 0;
     std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    std::int32_t sky = 0, unused = 0;
+    std::int32_t sky = 0, preview_size = 0;
     std::uint64_t tiles = 0;  ///< of the whole frame
     std::uint64_t header_bytes = 0;
 };
@@ -73,13 +73,18 @@ class PartReader {
         info.part = {head.number, head.count};
         info.window = {head.x0, head.y0, head.x1, head.y1};
         info.sky = head.sky == 0 ? Sky::kOpaque : Sky::kTransparent;
+        info.preview_size = head.preview_size;
         info.tiles = head.tiles;
         info.exr_header = bytes<std::string>(head.header_bytes);
         const bool is_window = 0 <= head.x0 && head.x0 < head.x1 && head.x1 <= kMostPixels &&
                                0 <= head.y0 && head.y0 < head.y1 && head.y1 <= kMostPixels;
         if (head.number < 1 || head.number > head.count || !is_window || head.sky < 0 ||
-            head.sky > 1 || head.tiles > head.header_bytes / sizeof(std::uint64_t))
+            head.sky > 1 || head.preview_size < 0 || head.preview_size > kMostPixels ||
+            head.tiles > head.header_bytes / sizeof(std::uint64_t))
             bad("its numbers make no sense");
+        const auto area = static_cast<std::uint64_t>(head.x1 - head.x0) *
+                          static_cast<std::uint64_t>(head.y1 - head.y0);
+        if (area / kMostPixelsOfTile > head.tiles) bad("its tiles do not cover the frame");
     }
 
     /// @param tile(PackedTile)   of every tile in order
@@ -217,7 +222,8 @@ PartWriter::PartWriter(const std::filesystem::path& path, const PartInfo& info)
     const Crop& w = info.window;
     file_->put(kMagic);
     file_->put(PartHeader{info.part.number, info.part.count, w.x0, w.y0, w.x1, w.y1,
-                          info.sky == Sky::kOpaque ? 0 : 1, 0, info.tiles, info.exr_header.size()});
+                          info.sky == Sky::kOpaque ? 0 : 1, info.preview_size, info.tiles,
+                          info.exr_header.size()});
     file_->put_bytes(info.exr_header.data(), info.exr_header.size());
 }
 
@@ -279,8 +285,9 @@ void join_parts(std::span<const std::filesystem::path> parts, const std::filesys
                 const std::filesystem::path& preview) {
     const PartInfo first = read_part_info(parts.front());
     JoinedImage image(exr, first);
+    // The sums are exposed already.
     Settings settings;
-    settings.sky = first.sky;
+    settings.sky = first.sky, settings.preview_size = first.preview_size;
     Preview small(first.window, settings);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         PartReader part(parts[i]);

@@ -18,14 +18,15 @@ struct PartInfo {
     FramePart part;
     Crop window;
     Sky sky = Sky::kOpaque;   ///< of the preview
+    int preview_size = 0;     ///< as Settings has it
     std::uint64_t tiles = 0;  ///< of the whole frame
     std::string exr_header;  ///< with an empty table of tiles: the frame's scene, number and camera
 
     /// Of one frame, cut in the same way.
     bool goes_with(const PartInfo& o) const {
-        return part.count == o.part.count && exr_header == o.exr_header && tiles == o.tiles &&
-               window.x0 == o.window.x0 && window.y0 == o.window.y0 && window.x1 == o.window.x1 &&
-               window.y1 == o.window.y1;
+        return part.count == o.part.count && preview_size == o.preview_size &&
+               exr_header == o.exr_header && tiles == o.tiles && window.x0 == o.window.x0 &&
+               window.y0 == o.window.y0 && window.x1 == o.window.x1 && window.y1 == o.window.y1;
     }
 };
 

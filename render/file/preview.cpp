@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <new>
+#include <numeric>
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
@@ -15,14 +17,13 @@
 namespace tesserae::render {
 namespace {
 
-constexpr int kMaxWidth = 1920, kMaxHeight = 4096;
-/// Steps of a summed value. sRGB's first code is 320 of them, and the largest square (35 x 35)
-/// still fits in 32 bits.
+/// Steps of a summed value. sRGB's first code is 320 of them, and over the largest area (65536 x
+/// 65536) a sum is exact as a double.
 constexpr double kOne = 1 << 20;
 
 /// Steps of a linear value. What is no number, as a damaged image may hold it, is black.
-std::uint32_t steps_of(double value) {
-    return value > 0 ? static_cast<std::uint32_t>(std::lround(kOne * std::min(value, 1.0))) : 0;
+std::uint64_t steps_of(double value) {
+    return value > 0 ? static_cast<std::uint64_t>(std::lround(kOne * std::min(value, 1.0))) : 0;
 }
 
 /// sRGB code of a linear value in [0, 1] (IEC 61966-2-1).
@@ -81,9 +82,19 @@ bool encode(png_structp png, png_infop info, PngTarget* target, int width, int h
 
 }  // namespace
 
-PreviewSize preview_size(const Settings& settings) {
-    const Preview preview(settings.window(), settings);
-    return {preview.width(), preview.height()};
+PreviewSize preview_size_of(const Settings& settings, const Crop& window) {
+    const int width = window.x1 - window.x0, height = window.y1 - window.y0;
+    const int wanted = settings.preview_size > 0 ? settings.preview_size : kPreviewWidth;
+    if (wanted >= width) return {width, height};
+    // Half of height * wanted / width, rounded.
+    const std::int64_t whole = width, half = (std::int64_t{height} * wanted + whole) / (2 * whole);
+    return {wanted, static_cast<int>(std::max<std::int64_t>(2, 2 * half))};
+}
+
+PreviewAxis::PreviewAxis(int picture, int preview) {
+    const int common = std::gcd(picture, preview);
+    of_picture_ = static_cast<std::uint64_t>(preview / common);
+    of_preview_ = static_cast<std::uint64_t>(picture / common);
 }
 
 Preview::Preview(const Crop& window, const Settings& settings, std::span<const Stamp> overlay)
@@ -91,28 +102,28 @@ Preview::Preview(const Crop& window, const Settings& settings, std::span<const S
       gain_(std::min(std::exp2(settings.exposure), std::numeric_limits<double>::max())),
       sky_(settings.sky),
       ghosts_(settings.ghosts),
-      overlay_(overlay.begin(), overlay.end()) {
-    const int w = window.x1 - window.x0, h = window.y1 - window.y0;
-    factor_ = std::max((w + kMaxWidth - 1) / kMaxWidth, (h + kMaxHeight - 1) / kMaxHeight);
-    width_ = (w + factor_ - 1) / factor_;
-    height_ = (h + factor_ - 1) / factor_;
-    sums_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-}
-
-Preview::Sum& Preview::sum_at(int x, int y) {
-    const auto column = static_cast<std::size_t>((x - window_.x0) / factor_);
-    const auto row = static_cast<std::size_t>((y - window_.y0) / factor_);
-    return sums_[row * static_cast<std::size_t>(width_) + column];
+      overlay_(overlay.begin(), overlay.end()),
+      size_(preview_size_of(settings, window)),
+      columns_(window.x1 - window.x0, size_.width),
+      rows_(window.y1 - window.y0, size_.height),
+      sums_(static_cast<Sum*>(std::calloc(count(), sizeof(Sum)))) {
+    if (!sums_) throw std::bad_alloc();
 }
 
 void Preview::add(int x, int y, const PreviewPixel& pixel) {
     const std::array<float, 4> over =
         ghosts_ == GhostsIn::kOver ? pixel.ghost : std::array<float, 4>{};
     const double clear = 1 - over[3];
-    Sum& sum = sum_at(x, y);
+    Sum value = {};
     for (std::size_t i = 0; i < 3; ++i)
-        sum[i] += steps_of(std::min(gain_ * pixel.color[i], 1.0) * clear + over[i]);
-    if (sky_ == Sky::kTransparent) sum[3] += steps_of(pixel.color[3] * clear + over[3]);
+        value[i] = steps_of(std::min(gain_ * pixel.color[i], 1.0) * clear + over[i]);
+    if (sky_ == Sky::kTransparent) value[3] = steps_of(pixel.color[3] * clear + over[3]);
+    rows_.for_each_overlap(y - window_.y0, [&](std::uint64_t row, std::uint64_t height) {
+        columns_.for_each_overlap(x - window_.x0, [&](std::uint64_t column, std::uint64_t width) {
+            Sum& sum = sums_[row * static_cast<std::uint64_t>(size_.width) + column];
+            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += width * height * value[i];
+        });
+    });
 }
 
 void Preview::add(const TileImage& tile) {
@@ -128,7 +139,7 @@ void Preview::add(const TileImage& tile) {
 }
 
 bool Preview::add_sums(std::uint64_t first, std::span<const Sum> sums) {
-    if (first > sums_.size() || sums.size() > sums_.size() - first) return false;
+    if (first > count() || sums.size() > count() - first) return false;
     for (std::size_t i = 0; i < sums.size(); ++i)
         for (std::size_t c = 0; c < 4; ++c) sums_[first + i][c] += sums[i][c];
     return true;
@@ -136,16 +147,14 @@ bool Preview::add_sums(std::uint64_t first, std::span<const Sum> sums) {
 
 std::vector<std::uint8_t> Preview::codes() const {
     const auto channels = static_cast<std::size_t>(this->channels());
-    std::vector<std::uint8_t> pixels(channels * sums_.size());
-    const int w = window_.x1 - window_.x0, h = window_.y1 - window_.y0;
-    tbb::parallel_for(0, height_, [&](int y) {
-        for (int x = 0; x < width_; ++x) {
-            const int columns = std::min(factor_, w - x * factor_);
-            const int rows = std::min(factor_, h - y * factor_);
-            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                   static_cast<std::size_t>(x);
-            const double all = kOne * columns * rows;
-            const Sum& sum = sums_[at];
+    std::vector<std::uint8_t> pixels(channels * count());
+    const double all = kOne * static_cast<double>(columns_.length() * rows_.length());
+    const auto width = static_cast<std::size_t>(size_.width);
+    tbb::parallel_for(0, size_.height, [&](int y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t at = static_cast<std::size_t>(y) * width + x;
+            std::array<double, 4> sum;
+            std::copy(sums_[at].begin(), sums_[at].end(), sum.begin());
             const double covered = sum[3] > 0 ? sum[3] : std::max({sum[0], sum[1], sum[2]});
             const double whole = channels == 3 ? all : covered;
             for (std::size_t i = 0; i < 3; ++i)
@@ -161,13 +170,13 @@ std::vector<std::uint8_t> Preview::codes() const {
 
 void Preview::write(const std::filesystem::path& path) const {
     std::vector<std::uint8_t> pixels = codes();
-    lay_over(overlay_, width_, height_, channels(), pixels);
+    lay_over(overlay_, size_.width, size_.height, channels(), pixels);
     FileWriter writer(path);
     PngTarget target = {&writer, nullptr};
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &target, on_error, on_warning);
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     const bool done =
-        info && encode(png, info, &target, width_, height_, channels(), pixels.data());
+        info && encode(png, info, &target, size_.width, size_.height, channels(), pixels.data());
     png_destroy_write_struct(&png, &info);
     if (target.failure) std::rethrow_exception(target.failure);
     if (!done)

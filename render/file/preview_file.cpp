@@ -7,11 +7,11 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
 #include "render/file/image_pixels.hpp"
-#include "render/file/preview.hpp"
 
 namespace tesserae::render {
 namespace {
@@ -29,7 +29,7 @@ std::uint32_t number_at(const unsigned char* bytes) {
 }
 
 /// @return what is wrong, or an empty text
-const char* damage_in(std::istream& in, std::uint64_t left) {
+std::string damage_in(std::istream& in, std::uint64_t left, const PreviewSize& size) {
     constexpr const char *kCut = "is cut off", *kOther = "is no PNG picture";
     std::array<unsigned char, 8> head;
     const auto read = [&](void* to, std::size_t count) {
@@ -50,7 +50,14 @@ const char* damage_in(std::istream& in, std::uint64_t left) {
         const auto found = crc32(0, chunk.data(), static_cast<uInt>(kType + length));
         if (found != number_at(chunk.data() + kType + length)) return "has a damaged chunk";
         const std::string_view type(reinterpret_cast<const char*>(chunk.data()), kType);
-        if (is_first && type != "IHDR") return kOther;
+        if (is_first) {
+            if (type != "IHDR" || length < 2 * kNumber) return kOther;
+            const std::uint32_t width = number_at(&chunk[kType]),
+                                height = number_at(&chunk[kType + kNumber]);
+            if (std::cmp_not_equal(width, size.width) || std::cmp_not_equal(height, size.height))
+                return fmt::format("has {}x{} pixels, not {}x{}", width, height, size.width,
+                                   size.height);
+        }
         if (type == "IEND") return left == 0 ? "" : "goes on after its end";
     }
 }
@@ -82,12 +89,12 @@ std::optional<ColorPlaces> places_of(const std::vector<ImageChannel>& channels,
 
 }  // namespace
 
-std::string damage_of_png(const std::filesystem::path& file) {
+std::string damage_of_preview(const std::filesystem::path& file, const PreviewSize& size) {
     std::error_code error;
     const std::uint64_t bytes = std::filesystem::file_size(file, error);
     std::ifstream in(file, std::ios::binary);
     if (error || !in) return fmt::format("{}: cannot be read", file.string());
-    const std::string damage = damage_in(in, bytes);
+    const std::string damage = damage_in(in, bytes, size);
     return damage.empty() ? "" : fmt::format("{}: {}", file.string(), damage);
 }
 

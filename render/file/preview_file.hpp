@@ -5,14 +5,15 @@
 #include <string>
 
 #include "render/description.hpp"
+#include "render/file/preview.hpp"
 #include "render/file/stamp.hpp"
 
 // Previews that lie beside their images.
 namespace tesserae::render {
 
-/// What is wrong with a PNG file, with its path: it cannot be read, it is cut off, or a chunk's
-/// checksum is not that of its bytes. Empty where it is whole.
-std::string damage_of_png(const std::filesystem::path& file);
+/// What is wrong with a preview's file, with its path: it cannot be read, it is cut off, a chunk's
+/// checksum is not that of its bytes, or it has another size. Empty where it is whole.
+std::string damage_of_preview(const std::filesystem::path& file, const PreviewSize& size);
 
 /// Makes the preview of an image from the image, with the bytes that rendering it gave.
 /// @param settings, overlay   as it was made

@@ -18,6 +18,8 @@ std::vector<std::string> draft_overrides(const Scene& scene) {
         sets.push_back("render.ghost_depth=1");
         sets.push_back("render.ghosts=\"over\"");
     }
+    if (settings.preview_size > 0)
+        sets.push_back(fmt::format("render.preview_size={}", smaller(settings.preview_size)));
     if (settings.crop) {
         const render::Crop& c = *settings.crop;
         sets.push_back(fmt::format("render.crop=[{}, {}, {}, {}]", c.x0 / kSmaller, c.y0 / kSmaller,

@@ -129,7 +129,7 @@ FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
     }
     if (!fs::exists(files.preview))
         return {FrameState::kLacksPreview, fmt::format("{}: is missing", files.preview.string())};
-    const std::string damage = render::damage_of_png(files.preview);
+    const std::string damage = damage_of_preview(scene, files.preview);
     if (!damage.empty()) return {FrameState::kLacksPreview, damage};
     return {FrameState::kComplete, {}};
 }
@@ -156,6 +156,11 @@ bool is_done(const Scene& scene, const render::FrameInfo& info, const render::Fr
     }
     tell(there.reason + ": the frame is rendered again");
     return false;
+}
+
+std::string damage_of_preview(const Scene& scene, const fs::path& preview) {
+    return render::damage_of_preview(preview,
+                                     render::preview_size_of(scene.render, scene.render.window()));
 }
 
 bool mend_preview(const Scene& scene, int frame, const render::FrameFiles& files,

@@ -57,7 +57,7 @@ std::vector<int> wanted_frames(const Scene& scene, const std::filesystem::path& 
 enum class FrameState {
     kMissing,
     kComplete,
-    kLacksPreview,    ///< the image is whole, its preview is missing or damaged
+    kLacksPreview,    ///< the image is whole, its preview is missing, damaged or of another size
     kOther,           ///< of another scene or look
     kOfOtherVersion,  ///< of this scene or another, by another version of motion or picture
     kDamaged,         ///< the image cannot be read or is cut off
@@ -73,6 +73,9 @@ struct FrameCheck {
 /// @param motion_version   of the trajectory that moves its bodies
 FrameCheck check_frame(const Scene& scene, int frame, int motion_version,
                        const render::FrameFiles& files);
+
+/// What is wrong with a frame's preview, with its path; empty where it is whole and of its size.
+std::string damage_of_preview(const Scene& scene, const std::filesystem::path& preview);
 
 /// Makes a preview that is missing or damaged from its image, and tells it on standard error.
 /// @return false: the image holds no colour, or is damaged as well

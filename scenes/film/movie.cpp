@@ -21,7 +21,6 @@
 #include "core/error.hpp"
 #include "core/file/partial_file.hpp"
 #include "render/file/image_info.hpp"
-#include "render/file/preview_file.hpp"
 #include "scenes/film/film_folder.hpp"
 #include "scenes/load/effective.hpp"
 #include "scenes/load/hash.hpp"
@@ -128,7 +127,7 @@ void mend_previews(const Scene& scene, const fs::path& folder) {
         const render::FrameFiles files = {image_file(scene, folder, number),
                                           preview_file(scene, folder, number)};
         const std::string damage = fs::exists(files.preview)
-                                       ? render::damage_of_png(files.preview)
+                                       ? damage_of_preview(scene, files.preview)
                                        : fmt::format("{}: is missing", files.preview.string());
         if (damage.empty()) continue;
         require_frame_of(scene, files.exr, number);

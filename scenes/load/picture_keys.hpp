@@ -309,6 +309,25 @@ struct CropOf {
     }
 };
 
+/// Of previews, kept as 0 where it is what they have anyway.
+struct PreviewWidth {
+    static constexpr const char* kAllowed = "1 to the frame's width";
+
+    int frame_width;
+
+    void read(TableReader& reader, const char* key, int& width) const {
+        reader.read(key, width, {1, kMaxSize});
+        if (width > frame_width)
+            reader.fail(key, fmt::format("expected an integer from 1 to {}, the frame's width; "
+                                         "leave it out, or set size",
+                                         frame_width));
+        if (width == std::min(frame_width, render::kPreviewWidth)) width = 0;
+    }
+    void write(EffectiveWriter& out, const char* key, int width) const {
+        if (width != 0) out.key(key, width);
+    }
+};
+
 /// [render]: the frames
 void frame_keys(auto& self, const auto& visit) {
     visit({"size", "pixels", "The frames have this width and height."}, self, FrameSize{});
@@ -395,6 +414,10 @@ void file_keys(auto& self, const auto& visit) {
     visit({"exposure", "stops",
            "Previews and film are brighter by a factor of two a stop; the EXR files stay."},
           self.exposure, Interval{-1000, 1000});
+    visit({"preview_size", "pixels",
+           "Previews and film are so wide; their height follows from the frame's.",
+           "1920, or the frame's width where that is less"},
+          self.preview_size, PreviewWidth{self.width});
     visit({"crop", "pixels",
            "Only the pixels from x0 to x1 and y0 to y1 are rendered, counted from the top left, x1 "
            "and y1 left out.",

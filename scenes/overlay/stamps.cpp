@@ -105,7 +105,7 @@ std::vector<render::Stamp> OverlayPainter::stamps(int frame, const SlicePose& sl
     std::vector<render::Stamp> stamps;
     if (!font_) return stamps;
     const Overlay& overlay = scene_.overlay;
-    const auto [width, height] = render::preview_size(scene_.render);
+    const auto [width, height] = render::preview_size_of(scene_.render, scene_.render.window());
     const double time = frame_instant(scene_, frame).time;
     const int line = std::clamp(static_cast<int>(std::lround(overlay.text_size * height)), 1, 1000);
     const int margin = static_cast<int>(std::lround(kMargin * line)), rim = std::max(1, line / 10);

@@ -8,6 +8,7 @@
 #include "core/dynamics/stages/islands.hpp"
 #include "core/dynamics/state/needs.hpp"
 #include "core/error.hpp"
+#include "render/file/preview.hpp"
 #include "render/picture_needs.hpp"
 #include "render/tile/frame_scene.hpp"
 #include "scenes/plan/plan_picture.hpp"
@@ -18,6 +19,8 @@
 namespace tesserae::scenes {
 namespace {
 
+/// Of a pixel of a preview: its sums, and its code.
+constexpr std::uint64_t kPreviewBytes = sizeof(render::Preview::Sum) + 4;
 /// Bytes of one body's position, rotor, velocity, angular velocity in memory and in a stored step.
 constexpr std::uint64_t kStateBytes = (4 + 8 + 4 + 6) * sizeof(double);
 /// States alive at once: while simulating the scene's, where the world begins, and its two about a
@@ -150,6 +153,9 @@ std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads
     std::uint64_t bytes = kRenderProgramBytes +
                           plan.bodies * (kRenderStates * kStateBytes + kPictureBytes) +
                           kTilesOfThread * threads * tile * kPixelBytes;
+    const render::PreviewSize preview =
+        render::preview_size_of(scene.render, scene.render.window());
+    bytes += static_cast<std::uint64_t>(preview.width) * preview.height * kPreviewBytes;
     const render::Channels& channels = scene.render.channels;
     if (scene.render.has_layers()) bytes += kTilesOfThread * threads * tile * kLayerBytes;
     if (scene.render.has_ghosts())

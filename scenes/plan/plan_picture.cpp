@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "render/camera/camera.hpp"
+#include "render/file/preview.hpp"
 #include "render/light/lamps.hpp"
 #include "render/material/bsdf.hpp"
 #include "render/picture_needs.hpp"
@@ -138,6 +139,12 @@ void decide_picture(const Scene& scene, Plan& plan) {
     plan.decide("colour variation", varied > 0,
                 fmt::format("{} material(s) differ a little from body to body", varied),
                 "albedo_variation = 0 of all materials");
+    const render::Crop window = scene.render.window();
+    const render::PreviewSize preview = render::preview_size_of(scene.render, window);
+    plan.decide(
+        "smaller previews", preview.width < window.x1 - window.x0,
+        fmt::format("preview_size: {}x{}, pixels averaged by area", preview.width, preview.height),
+        "previews have the picture's size");
     plan.decide("transparent sky", scene.render.sky == render::Sky::kTransparent,
                 "view rays that meet nothing bring no light", "sky = \"opaque\"");
     plan.decide("overlay", !scene.overlay.is_empty(),

@@ -10,7 +10,6 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledInputFile.h>
 #include <gtest/gtest.h>
-#include <png.h>
 #include <sys/resource.h>
 
 #include <chrono>
@@ -24,6 +23,7 @@
 #include "render/camera/camera.hpp"
 #include "render/file/preview_file.hpp"
 #include "tests/content.hpp"
+#include "tests/render/png_picture.hpp"
 #include "tests/render/test_scene.hpp"
 
 namespace tesserae::render {
@@ -242,58 +242,6 @@ TEST(Frame, AuxiliaryChannelsAloneCastNoShadowRays) {
     EXPECT_EQ(stats.shadow_rays, 0u);
     scene.settings.channels.albedo = false;
     EXPECT_EQ(render(scene, folder / "a.exr").view_rays, 150u * 90);
-}
-
-/// A PNG picture, row by row.
-struct Png {
-    std::uint32_t width = 0, height = 0;
-    std::size_t channels = 0;  ///< 3, or 4 with alpha
-    std::vector<std::uint8_t> codes;
-
-    explicit Png(const std::filesystem::path& file) {
-        png_image png = {};
-        png.version = PNG_IMAGE_VERSION;
-        EXPECT_TRUE(png_image_begin_read_from_file(&png, file.c_str()));
-        channels = png.format & PNG_FORMAT_FLAG_ALPHA ? 4 : 3;
-        png.format = channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
-        width = png.width, height = png.height;
-        codes.resize(PNG_IMAGE_SIZE(png));
-        EXPECT_TRUE(png_image_finish_read(&png, nullptr, codes.data(), 0, nullptr));
-    }
-};
-
-double srgb_code(double v) {
-    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
-}
-
-TEST(Frame, PreviewIsTheBoxFilteredPicture) {
-    // 4000 wide makes boxes of 3 x 3 with a rest of 1 at the right; 8 high a rest of 2.
-    TestScene scene = busy_scene();
-    scene.settings.width = 4000, scene.settings.height = 8;
-    scene.settings.samples = 1;
-    scene.settings.exposure = 1;
-    const Folder folder;
-    render(scene, folder / "a.exr", folder / "a.png");
-    const Image image = read_exr(folder / "a.exr");
-    const Png png(folder / "a.png");
-    ASSERT_EQ(png.width, 1334u);
-    ASSERT_EQ(png.height, 3u);
-    ASSERT_EQ(png.channels, 3u);
-    const char* const channels[] = {"R", "G", "B"};
-    for (int y = 0; y < 3; ++y)
-        for (int x = 0; x < 1334; ++x)
-            for (int c = 0; c < 3; ++c) {
-                double sum = 0;
-                int count = 0;
-                for (int v = 3 * y; v < std::min(8, 3 * y + 3); ++v)
-                    for (int u = 3 * x; u < std::min(4000, 3 * x + 3); ++u, ++count)
-                        sum += std::min(1.0, 2.0 * image.at(channels[c], u, v));
-                const double code = srgb_code(sum / count);
-                // Half a code, and the sums' steps of 2^-20 where sRGB is steepest (3295 codes per
-                // unit).
-                ASSERT_NEAR(png.codes[static_cast<std::size_t>(3 * (1334 * y + x) + c)], code,
-                            0.504);
-            }
 }
 
 /// Straight alpha, as PNG has it: laid over black in linear light it is the image's own colour.

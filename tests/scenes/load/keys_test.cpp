@@ -86,6 +86,7 @@ std::string other(const T&, const Flags<T>& flags) {
     return "[" + toml_text(flags.flags.back().name) + "]";
 }
 std::string other(const render::Settings&, FrameSize) { return "[64, 48]"; }
+std::string other(int, PreviewWidth) { return "640"; }
 std::string other(const render::Crop&, CropOf) { return "[0, 0, 3, 2]"; }
 std::string other(const CameraOrbit&, OrbitTable) {
     return "{ about = [0, 1, 0, 0], plane = \"yw\", angle = 40 }";

@@ -55,6 +55,13 @@ const std::vector<Broken>& broken_scenes() {
         {"[body]\n", "1:1", {"expected an array of tables, [[body]]"}},
         {"material = [1]\n", "1:13", {"expected an array of tables, [[material]]"}},
         // Wrong types and ranges.
+        {"[render]\npreview_size = 0\n",
+         "2:16",
+         {"[render]: preview_size = 0", "expected an integer from 1"}},
+        {"[render]\npreview_size = \"big\"\n", "2:16", {"wrong type", "an integer from 1"}},
+        {"[render]\nsize = [640, 360]\npreview_size = 641\n",
+         "3:16",
+         {"preview_size = 641", "from 1 to 640, the frame's width", "or set size"}},
         {"[physics]\nduration = \"2\"\n",
          "2:12",
          {"[physics]: duration = \"2\"", "wrong type", "number >= 0"}},

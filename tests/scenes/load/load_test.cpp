@@ -392,7 +392,7 @@ TEST(SceneHash, SeesEveryValue) {
           "body.floor.visible=false", "render.samples=1", "camera.field_of_view=49",
           "light.0.color=[0,0,0]", "light.3.strength=1", "light.3.position=[0,0,0,0]",
           "light.4.radius=1", "render.integrator=\"direct\"", "render.bounces=0",
-          "render.exposure=0", "render.crop=[0,0,1,1]",
+          "render.exposure=0", "render.preview_size=7", "render.crop=[0,0,1,1]",
           "body.floor.material=\"dots \\\" \\\\ \\t ä\""}) {
         EXPECT_NE(changed(picture).hash, scene.hash) << picture;
         EXPECT_EQ(changed(picture).motion_hash, scene.motion_hash) << picture;
@@ -407,6 +407,20 @@ TEST(Hashes, KnowAToleranceThatIsNotTheDefault) {
     EXPECT_EQ(first_motion_difference(plain.effective, zero.effective),
               "physics: nothing there, tolerance = 0 here");
     EXPECT_EQ(load_text(zero.effective).hash, zero.hash);
+}
+
+TEST(Hashes, KnowAPreviewOfAnotherSizeThanTheDefault) {
+    for (const auto& [size, usual] :
+         {std::pair("[640, 360]", "640"), std::pair("[4000, 360]", "1920")}) {
+        const std::string text = std::string("[render]\nsize = ") + size + "\n";
+        const Scene plain = load_text(text);
+        EXPECT_EQ(plain.effective.find("preview_size"), std::string::npos);
+        EXPECT_EQ(load_text(text, {std::string("render.preview_size=") + usual}).hash, plain.hash);
+        const Scene other = load_text(text, {"render.preview_size=321"});
+        EXPECT_NE(other.hash, plain.hash);
+        EXPECT_EQ(other.render.preview_size, 321);
+        EXPECT_EQ(load_text(other.effective).hash, other.hash);
+    }
 }
 
 TEST(Hashes, OfScenesWithoutRollingFrictionAreThoseOfBeforeThereWasAny) {
