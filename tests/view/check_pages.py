@@ -129,6 +129,11 @@ def check_colours(browser, job):
                  "--samples", 1, "--set", "light.0.angle=0")
     wanted = oiio.ImageBuf(str(next((job.folder / "colours" / "preview").glob("*.png"))))
     page_ids(browser)
+    check_picture(browser, job, wanted)
+
+
+def check_picture(browser, job, wanted):
+    """The page's picture as it stands is the renderer's preview."""
     url = browser.run("return document.getElementById('picture').toDataURL()")
     shown = job.folder / f"{job.name}-page.png"
     shown.write_bytes(base64.b64decode(url.split(",")[1]))
@@ -136,6 +141,19 @@ def check_colours(browser, job):
                             oiio.ImageBuf(str(shown)).get_pixels(oiio.UINT8)[:, :, :3].astype(int))
     part = (differences.max(axis=2) <= 3).mean()
     check(part > 0.98, f"{job.name}: {100 * part:.2f} % of pixels have the renderer's colour")
+
+
+def check_looks(browser, program, folder):
+    """Patterns, hues and ghosts."""
+    for name, text in {"patterns": scenes.patterns(), "patterns-of-bodies": scenes.patterns("body"),
+                       "ghosts": scenes.ghosts()}.items():
+        job = Job(program, folder, name, text)
+        browser.open(job.view())
+        if name == "ghosts":
+            depth = browser.run("return tesserae.page.panel.sliders.ghost.value")
+            check(abs(depth - 2.5) < 1e-6, f"the page begins with the scene's ghosts: {depth}")
+            browser.run("tesserae.page.options.ghostDepth = 2.5")
+        check_colours(browser, job)
 
 
 def check_motion(browser, program, folder):
@@ -282,7 +300,7 @@ def main():
     begin = time.time()
     check_size(program, folder)
     with Browser() as browser:
-        for checks in (check_stills, check_motion, check_pile, check_hostile, check_small,
+        for checks in (check_stills, check_motion, check_pile, check_hostile, check_looks, check_small,
                        check_controls, check_speed):
             start = time.time()
             checks(browser, program, folder)

@@ -56,6 +56,34 @@ def all_shapes(origin=(0, 0, 0, 0), more=""):
     return text
 
 
+PATTERNS = ["noise", "grid", "edges", "cells", "w", "stripes"]
+
+
+def patterns(more=""):
+    """Every pattern on several shapes; hues that differ from body to body."""
+    text = camera((0, 3.2, -7.5, 0.2), (0, 0.3, 0.6, 0), TURNED) + LIGHT
+    for pattern in PATTERNS:
+        text += (f'[[material]]\nname = "{pattern}"\npattern = "{pattern}"\nline_width = 0.15\n'
+                 f'albedo = [0.9, 0.5, 0.3]\nw_of = "{"body" if more else "point"}"\n')
+    for i, (name, shape) in enumerate(SHAPES.items()):
+        turn = {"xy": 20 + 13 * i, "xw": 10 + 7 * i, "yz": 5 * i, "zw": 30 - 4 * i}
+        place = (2.1 * (i % 4 - 1.5), 0, 2.1 * (i // 4), 0.11 * (i % 3 - 1))
+        text += (body(name, shape, place, turn).replace('"tiles"', f'"{PATTERNS[i % 6]}"') +
+                 ("hue_jitter = 0.5\n" if i % 2 else ""))
+    return text
+
+
+def ghosts():
+    """Every shape beside the slice, near and far."""
+    text = camera((0, 3.2, -7.5, 0), (0, 0.3, 0.6, 0)) + LIGHT
+    text += "[render]\nghost_depth = 2.5\nghosts = \"over\"\nghost_plus = [0.9, 0.7, 0.1]\n"
+    for i, (name, shape) in enumerate(SHAPES.items()):
+        turn = {"xy": 20 + 13 * i, "xw": 10 + 7 * i, "yz": 5 * i, "zw": 30 - 4 * i}
+        place = (1.7 * (i % 4 - 1.5), 0, 1.5 * (i // 4), (0.9 + 0.15 * i) * (-1) ** i)
+        text += body(name, shape, place, turn)
+    return text
+
+
 def plane_offset(point, normal):
     length = sum(n * n for n in normal) ** 0.5
     return sum(p * n for p, n in zip(point, normal)) / length

@@ -57,11 +57,11 @@ class Panel {
       page.leaveFilm();
       change(value);
     });
-    const ghosts = (depth) => this.setGhosts(byId("ghosts").checked, depth);
+    const depth = page.scene.ghost_depth, ghosts = (deep) => this.setGhosts(byId("ghosts").checked, deep);
     this.sliders = {
       w: new Slider("w", -reach, reach, 0, moved((v) => (view.shift = v))),
       fov: new Slider("fov", 1, 150, view.fieldOfView, moved((v) => (view.fieldOfView = clamp(v, 0.01, 179)))),
-      ghost: new Slider("ghost", 0, reach, page.scene.ghost_depth || 0.25 * reach, changed(ghosts)),
+      ghost: new Slider("ghost", 0, Math.max(reach, depth), depth || 0.25 * reach, changed(ghosts)),
     };
     kTurns.forEach((name, i) => {
       this.sliders[name] = new Slider(name, -180, 180, 0, moved((v) => (view.angles[i] = v * degrees)));

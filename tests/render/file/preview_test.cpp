@@ -176,7 +176,7 @@ TEST(PreviewSlow, HasTheSameBytesHoweverThePictureIsCut) {
         const Folder folder;
         render(scene, folder / "a.exr", folder / "a.png", 1);
         const std::string expected = content(folder / "a.png");
-        ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings, folder / "again.png"));
+        ASSERT_TRUE(remake_preview(folder / "a.exr", scene.settings, {}, folder / "again.png"));
         EXPECT_EQ(content(folder / "again.png"), expected);
         for (const int tile : {8, 32, 64})
             for (const int threads : {1, 4}) {
