@@ -14,26 +14,33 @@ constexpr int kMostSteps = 8;
 
 /// Out of a shape where a ray from outside passes it at the least angle, the rim's: there the
 /// distance f(t) touches sine * t from above. f being convex, a bracket closes in on it; the steps
-/// are Newton's for a double root.
+/// are Newton's for a double root. Where f has a kink there, as inside of what has faces, it is the
+/// mean of the normals on both sides that is at the rim's angle.
 template <class S>
 Vec4 rim_normal(const S& shape, const Vec4& origin, const Vec4& direction, double limit,
                 double sine, FrameStats& stats) {
     double low = 0, high = limit, t = -origin.dot(direction);
     if (!(t > low && t < high)) t = high < kMiss ? high : origin.norm();
-    Vec4 out;
+    struct Side {
+        Vec4 out = Vec4::Zero();
+        double slope = 0;
+    } before, after;
     for (int i = 0; i < kMostSteps; ++i) {
         ++stats.distance_evaluations;
         const Vec4 point = origin + t * direction;
-        out = normal(shape, point);
+        const Vec4 out = normal(shape, point);
         const double slope = out.dot(direction) - sine;
-        if (std::abs(slope) < kNear) break;
+        if (std::abs(slope) < kNear) return out;
+        (slope < 0 ? before : after) = {out, slope};
         (slope < 0 ? low : high) = t;
         const double step = (signed_distance(shape, point) - sine * t) / slope;
         const auto is_within = [&](double x) { return x > low && x < high; };
         const double middle = high < kMiss ? 0.5 * (low + high) : 2 * low;
         t = is_within(t - 2 * step) ? t - 2 * step : is_within(t - step) ? t - step : middle;
     }
-    return out;
+    if (before.slope == 0) return after.out;
+    if (after.slope == 0) return before.out;
+    return after.slope * before.out - before.slope * after.out;
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ bool is_made_by(const std::filesystem::path& file, const char* creator);
 /// How simulate() works.
 struct SimulateOptions {
     std::uint64_t store_every = 0;  ///< 0: the steps that frames need
-    std::vector<int> frames;        ///< steps are taken to the last of them; empty: to the scene's
+    std::vector<int> frames = {};   ///< steps are taken to the last of them; empty: to the scene's
     bool overwrite = false;         ///< other motion or steps are replaced; what serves is kept
     bool quiet = false;
     parallel::Trace* trace = nullptr;  ///< records the stages of every step that is taken

@@ -164,7 +164,14 @@ class Filming {
     /// @throws InputError   it holds something else
     void require_draft_folder() const {
         if (!fs::exists(folder_) || is_draft() || fs::exists(folder_ / kSceneFile)) return;
-        if (!fs::is_directory(folder_) || !fs::is_empty(folder_))
+        // A draft that was ended before its first file has left nothing else.
+        const auto is_leftover = [](const fs::directory_entry& entry) {
+            return entry.path().extension() == ".partial";
+        };
+        const bool is_begun =
+            fs::is_directory(folder_) &&
+            std::all_of(fs::directory_iterator(folder_), fs::directory_iterator(), is_leftover);
+        if (!is_begun)
             throw InputError(
                 fmt::format("{}: is there and no draft; choose another folder", folder_.string()));
     }
@@ -292,6 +299,7 @@ class Filming {
             json["film"] = to_json(report);
             return "\n" + movie_text(report);
         } catch (const InputError& error) {
+            if (line_.frames.empty()) throw RunError(error.what());
             // Some frames still look as they did before: they were not asked for.
             return fmt::format("\nfilm:    not made: {}", error.what());
         }

@@ -296,7 +296,7 @@ TEST(Path, ClampTakesFromIndirectLightOnly) {
     scene.add(Hyperplane{-Vec4::UnitY(), -3}, Vec4::Zero(), {}, 2);
     scene.lights.spheres.push_back({Vec4(-0.8, 0.8, 2, 0.3), 0.6, Color::Constant(60)});
     TestScene direct = scene, clamped = scene;
-    direct.settings.bounces = 0;
+    direct.settings.bounces = direct.settings.specular_bounces = 0;
     constexpr double kMost = 0.5;
     clamped.settings.clamp_indirect = kMost;
     const TracedScene all(scene), once(direct), most(clamped);

@@ -37,7 +37,8 @@ struct Filmed {
 
     explicit Filmed(const std::vector<std::string>& sets, std::uint64_t store_every = 0)
         : file(kThrown), scene(load_scene(file.path(), sets)), trajectory(file.folder() / "t.h5") {
-        simulate(scene, make_plan(scene, 1), trajectory, store_every, false, true);
+        simulate(scene, make_plan(scene, 1), trajectory,
+                 {.store_every = store_every, .quiet = true});
     }
     Vec4 way(int frame) const {
         Poses poses(scene, {frame}, trajectory);

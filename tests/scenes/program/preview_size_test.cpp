@@ -77,16 +77,21 @@ TEST_F(PreviewSizes, OfOthersAreMadeAgain) {
 
 TEST_F(PreviewSizes, ArePlannedFor) {
     const auto plan = [&](const char* size, const char* preview) {
-        Words words = {"plan", scene_, "--json", "--size", size};
-        words.insert(words.end(), {"--set", std::string("render.preview_size=") + preview});
+        const Words words = {"plan",
+                             scene_,
+                             "--json",
+                             "--set",
+                             fmt::format("render.size={}", size),
+                             "--set",
+                             fmt::format("render.preview_size={}", preview)};
         return nlohmann::json::parse(tesserae(words).out);
     };
-    const auto decision = [](const nlohmann::json& plan) {
-        for (const auto& d : plan["decisions"])
+    const auto decision = [](const nlohmann::json& told) {
+        for (const auto& d : told["decisions"])
             if (d["part"] == "smaller previews") return d;
         return nlohmann::json();
     };
-    const auto full = plan("600x400", "600"), half = plan("600x400", "300");
+    const auto full = plan("[600, 400]", "600"), half = plan("[600, 400]", "300");
     EXPECT_EQ(decision(full)["needed"], false);
     EXPECT_EQ(decision(half)["needed"], true);
     EXPECT_NE(decision(half)["reason"].get<std::string>().find("300x200"), std::string::npos);
