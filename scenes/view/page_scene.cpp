@@ -152,6 +152,7 @@ std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moment
     json["exposure"] = scene.render.exposure;
     json["max_distance"] = scene.render.max_distance;
     json["ghost_depth"] = scene.render.ghost_depth;
+    json["ghosts_over"] = scene.render.ghosts == render::GhostsIn::kOver;
     json["ghost_colors"] = json_list(scene.render.ghost_colors);
     json["side_colors"] = json_list(render::kSideColors);
     json["times"] = Json::array();

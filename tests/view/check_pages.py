@@ -125,9 +125,9 @@ def check_stills(browser, program, folder):
 
 def check_colours(browser, job):
     """The page's light is the renderer's, but for what is at the rims of shadows and bodies."""
-    job.tesserae("render", job.scene, "-o", job.folder / "colours", "--size", "%dx%d" % SIZE,
+    job.tesserae("render", job.scene, "-o", job.folder / f"{job.name}-colours", "--size", "%dx%d" % SIZE,
                  "--samples", 1, "--set", "light.0.angle=0")
-    wanted = oiio.ImageBuf(str(next((job.folder / "colours" / "preview").glob("*.png"))))
+    wanted = oiio.ImageBuf(str(next((job.folder / f"{job.name}-colours" / "preview").glob("*.png"))))
     page_ids(browser)
     check_picture(browser, job, wanted)
 
@@ -152,7 +152,6 @@ def check_looks(browser, program, folder):
         if name == "ghosts":
             depth = browser.run("return tesserae.page.panel.sliders.ghost.value")
             check(abs(depth - 2.5) < 1e-6, f"the page begins with the scene's ghosts: {depth}")
-            browser.run("tesserae.page.options.ghostDepth = 2.5")
         check_colours(browser, job)
 
 

@@ -273,7 +273,7 @@ function interfaceOf(page) {
     },
     size: (width, height) => {
       // A script sees at first what tesserae render shows.
-      if (!page.isFixed) page.panel.setGhosts(false, 0);
+      if (!page.isFixed) page.panel.setGhosts(page.scene.ghosts_over, page.scene.ghost_depth);
       page.isFixed = true;
       page.canvas.style.width = `${width}px`, page.canvas.style.height = `${height}px`;
       Object.assign(page.options, {width, height, margin: 1});
