@@ -108,7 +108,7 @@ std::vector<render::Stamp> OverlayPainter::stamps(int frame, const SlicePose& sl
     const auto [width, height] = render::preview_size_of(scene_.render, scene_.render.window());
     const double time = frame_instant(scene_, frame).time;
     const int line = std::clamp(static_cast<int>(std::lround(overlay.text_size * height)), 1, 1000);
-    const int margin = static_cast<int>(std::lround(kMargin * line)), rim = std::max(1, line / 10);
+    const int margin = static_cast<int>(std::lround(kMargin * line)), rim = std::max(2, line / 6);
     const int room = std::max(1, width - 2 * margin);
     const std::array<std::uint8_t, 3> color = {
         srgb_code(overlay.color[0]), srgb_code(overlay.color[1]), srgb_code(overlay.color[2])};
