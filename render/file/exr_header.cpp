@@ -40,8 +40,7 @@ class HeaderWalk {
             const std::string type = word();
             const std::int64_t length = number();
             const std::int64_t begin = in_.tellg(), end = begin + length;
-            require_header(in_.good() && length >= 0 && end <= static_cast<std::int64_t>(bytes_),
-                           kCut);
+            require_whole(in_.good() && length >= 0 && end <= static_cast<std::int64_t>(bytes_));
             // OpenEXR reads such a value by its type: of another length it would take what follows
             // for something else.
             const auto fixed = kLengths.find(type);
@@ -60,7 +59,6 @@ class HeaderWalk {
     std::uint64_t position() { return static_cast<std::uint64_t>(in_.tellg()); }
 
   private:
-    static constexpr const char* kCut = "its header is cut off";
     static constexpr std::size_t kLongestName = 255;
 
     /// Of values whose type tells it [bytes].
@@ -98,10 +96,15 @@ class HeaderWalk {
     /// The bytes up to the next zero.
     std::string word() {
         std::string text;
-        require_header(std::getline(in_, text, '\0') && !in_.eof(), kCut);
+        require_whole(std::getline(in_, text, '\0') && !in_.eof());
         // OpenEXR takes so many bytes for a whole name, and what follows for something else.
         require_header(text.size() <= kLongestName, "its header has a name that is too long");
         return text;
+    }
+
+    /// A file that ends too early is cut off, unless it is the system that fails.
+    void require_whole(bool good) const {
+        require_header(good, in_.bad() ? std::strerror(errno) : "its header is cut off");
     }
 
     std::ifstream in_;

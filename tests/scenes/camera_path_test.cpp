@@ -138,7 +138,7 @@ TEST(CameraPath, DoesNotDependOnTheAxes) {
     for (CameraKey& key : turned)
         for (auto part :
              {&CameraKey::position, &CameraKey::look_at, &CameraKey::up, &CameraKey::fourth})
-            key.*part = turn * *(key.*part);
+            if (key.*part) key.*part = Vec4(turn * *(key.*part));
     const CameraPath path({}, keys), turned_path({}, turned);
     for (double t = 0; t < keys.back().time; t += 0.07) {
         const auto a = path.at(t), b = turned_path.at(t);
