@@ -88,8 +88,7 @@ SlicePose::SlicePose(const std::filesystem::path& exr) {
     fourth = vector_in(info, "tesserae/cameraFourth", exr);
 }
 
-OverlayPainter::OverlayPainter(const Scene& scene)
-    : scene_(scene), path_(scene.camera_path()) {
+OverlayPainter::OverlayPainter(const Scene& scene) : scene_(scene), path_(scene.camera_path()) {
     if (!is_empty()) font_.emplace(scene.overlay.font);
 }
 
