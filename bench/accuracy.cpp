@@ -85,8 +85,8 @@ void print(const Row& row) {
     const double spread = (quantile(row.seconds, 0.75) - quantile(row.seconds, 0.25)) / median;
     for (const Error& error : row.errors)
         fmt::print("{},{},{},{},{},{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
-                   error.quantity, error.unit, name_of(k.integrator), name_of(k.solver), k.substeps,
-                   k.iterations, k.steps_per_second, error.value, scale * median, 100 * spread,
+                   error.quantity, error.unit, name_of(k.integrator), k.substeps, k.iterations,
+                   k.steps_per_second, error.value, scale * median, 100 * spread,
                    row.seconds.size());
 }
 
@@ -107,7 +107,7 @@ void run(std::span<char*> names) {
             if (static_cast<int>(row.seconds.size()) < row.repeats) repeat(row);
 
     fmt::print(
-        "experiment,quantity,unit,integrator,solver,substeps,iterations,steps_per_second,error,us_"
+        "experiment,quantity,unit,integrator,substeps,iterations,steps_per_second,error,us_"
         "per_s,"
         "spread_percent,repeats\n");
     for (const Row& row : rows) print(row);

@@ -1,4 +1,4 @@
-// Stiff and extreme scenes under both solvers: CSV on standard output. `extremes long` adds the
+// Stiff and extreme scenes at the defaults: CSV on standard output. `extremes long` adds the
 // longest one.
 
 #include <fmt/core.h>
@@ -14,31 +14,18 @@
 namespace tesserae::bench {
 namespace {
 
-struct Named {
-    std::string name;
-    PhysicsSettings settings;
-};
-
-std::vector<Named> settings() {
-    PhysicsSettings impulse, soft;
-    soft.solver = Solver::kSoft;
-    soft.substeps = 4;
-    soft.iterations = 2;
-    return {{fmt::format("impulse 1x{}", impulse.iterations), impulse}, {"soft 4x2", soft}};
-}
-
-void print(const ExtremeCase& extreme, const Named& named) {
+void print(const ExtremeCase& extreme) {
     const double begin = thread_time();
     std::vector<Measurement> rows;
     try {
-        rows = extreme.measure(named.settings);
+        rows = extreme.measure({});
     } catch (const RunError& error) {
-        fmt::print(stderr, "{}, {}: {}\n", extreme.name, named.name, error.what());
+        fmt::print(stderr, "{}: {}\n", extreme.name, error.what());
         rows = {{"left the finite range", "", 1}};
     }
     for (const Measurement& row : rows)
-        fmt::print("\"{}\",{},{},{},{:.2e},{:.2f}\n", extreme.name, named.name, row.quantity,
-                   row.unit, row.value, thread_time() - begin);
+        fmt::print("\"{}\",{},{},{:.2e},{:.2f}\n", extreme.name, row.quantity, row.unit, row.value,
+                   thread_time() - begin);
 }
 
 }  // namespace
@@ -48,9 +35,8 @@ int main(int argc, char** argv) {
     using namespace tesserae::bench;
     const bool with_long = argc > 1 && std::strcmp(argv[1], "long") == 0;
     try {
-        fmt::print("case,settings,quantity,unit,value,serial_s\n");
-        for (const ExtremeCase& extreme : extreme_cases(with_long))
-            for (const Named& named : settings()) print(extreme, named);
+        fmt::print("case,quantity,unit,value,serial_s\n");
+        for (const ExtremeCase& extreme : extreme_cases(with_long)) print(extreme);
     } catch (const std::exception& e) {
         fmt::print(stderr, "extremes: {}\n", e.what());
         return 1;

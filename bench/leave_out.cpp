@@ -190,7 +190,7 @@ Work steps_of(scenes::Scene scene, int settle) {
     };
 }
 
-/// The islands of one step: built, solved, relaxed.
+/// The islands of one step: built and solved.
 Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
     parallel::ParallelWorld world(std::move(scene.bodies), *scene.physics);
     for (int i = 0; i < settle; ++i) world.step(kSeconds);
@@ -206,7 +206,7 @@ Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
             integrate_velocities(simulation, step, {0, simulation.bodies.size()});
             for (std::size_t i = 0; i < step.islands.size(); ++i) {
                 solve_island(simulation, step, i);
-                relax_island(simulation, step, i);
+                drop_correction(simulation, step, i);
             }
         });
     };

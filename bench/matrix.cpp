@@ -39,13 +39,11 @@ namespace {
 /// sub-steps' own cost.
 const std::vector<Knobs> kWays = {
     {},
-    {.solver = Solver::kImpulse, .substeps = 1, .iterations = 5, .tolerance = 0},
-    {.solver = Solver::kImpulse, .substeps = 4, .iterations = 2, .tolerance = 0},
-    {.solver = Solver::kImpulse, .substeps = 8, .iterations = 1, .tolerance = 0},
-    {.solver = Solver::kSoft, .substeps = 1, .iterations = 10, .tolerance = 0},
-    {.solver = Solver::kSoft, .substeps = 2, .iterations = 4, .tolerance = 0},
-    {.solver = Solver::kSoft, .substeps = 4, .iterations = 2, .tolerance = 0},
-    {.solver = Solver::kSoft, .substeps = 8, .iterations = 1, .tolerance = 0},
+    {.substeps = 1, .iterations = 5, .tolerance = 0},
+    {.substeps = 1, .iterations = 10, .tolerance = 0},
+    {.substeps = 2, .iterations = 4, .tolerance = 0},
+    {.substeps = 4, .iterations = 2, .tolerance = 0},
+    {.substeps = 8, .iterations = 1, .tolerance = 0},
 };
 
 /// Most sub-steps a second in which contacts and crowds are run.
@@ -78,16 +76,6 @@ const char* name_of(RotationIntegrator integrator) {
             return "euler";
         case RotationIntegrator::kMidpoint:
             return "midpoint";
-    }
-    return "unknown";
-}
-
-const char* name_of(Solver solver) {
-    switch (solver) {
-        case Solver::kImpulse:
-            return "impulse";
-        case Solver::kSoft:
-            return "soft";
     }
     return "unknown";
 }

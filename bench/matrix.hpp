@@ -26,6 +26,5 @@ std::vector<Listed> all_experiments();
 std::vector<Knobs> knobs_of(Kind kind);
 
 const char* name_of(RotationIntegrator integrator);
-const char* name_of(Solver solver);
 
 }  // namespace tesserae::bench

@@ -19,9 +19,8 @@ RESULTS = Path(__file__).resolve().parent / "results"
 LINK = "bench/results"
 END = "<!-- end -->"
 # The program's own settings, as the CSV files of accuracy/ name them.
-DEFAULTS = {"integrator": "midpoint", "solver": "impulse", "substeps": "1", "iterations": "10",
+DEFAULTS = {"integrator": "midpoint", "substeps": "1", "iterations": "10",
             "steps_per_second": "240"}
-IMPULSE = {"settings": "impulse 1x10"}
 
 
 def rows_of(name, **wanted):
@@ -110,7 +109,7 @@ def fast():
 
 def well():
     """Returns the table of errors at the defaults."""
-    lost = rows_of("extremes.csv", quantity="lost", unit="of 500", **IMPULSE)
+    lost = rows_of("extremes.csv", quantity="lost", unit="of 500")
     tower = {"case": "tower of 40 boxes, 10 s", "quantity": "moved at the end"}
     side = 1  # of those boxes [m]
     rows = [
@@ -123,7 +122,7 @@ def well():
          1e3 * value("accuracy/bounces.csv", "error", quantity="bounce time", **DEFAULTS),
          "ms, at most"),
         ("extremes.csv", "how far a tower of 40 boxes of 1 m has moved after 10 s",
-         1e3 * side * value("extremes.csv", "value", **tower, **IMPULSE), "mm, at most"),
+         1e3 * side * value("extremes.csv", "value", **tower), "mm, at most"),
         ("extremes.csv", "bodies that pass through a thin wall at which they are thrown",
          sum(float(row["value"]) for row in lost), f"of {500 * len(lost)}"),
     ]

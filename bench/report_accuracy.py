@@ -3,7 +3,7 @@ spending a step is best.
 
 usage: report_accuracy.py HEAD ACCURACY_CSV RESULTS_FOLDER
 HEAD holds the comment lines (machine, build, commit) that begin every CSV file; ACCURACY_CSV is what
-the program accuracy printed. A way is (integrator, solver, sub-steps, iterations); its points are its
+the program accuracy printed. A way is (integrator, sub-steps, iterations); its points are its
 numbers of steps a second.
 """
 
@@ -31,7 +31,7 @@ LARGEST_RESIDUAL = np.log(1.5)
 DOUBT = "doubt about the converged run"
 # Noise by construction: not ranked.
 STATISTICS = ("components against Gauss", "speeds against Maxwell", DOUBT)
-DEFAULT = ("midpoint", "impulse", 1, 10)
+DEFAULT = ("midpoint", 1, 10)
 DEFAULT_STEPS = 240
 
 Point = collections.namedtuple("Point", "steps error time row")
@@ -59,7 +59,7 @@ def read(path):
     tree = {}
     with open(path) as file:
         for row in csv.DictReader(file):
-            way = (row["integrator"], row["solver"], int(row["substeps"]), int(row["iterations"]))
+            way = (row["integrator"], int(row["substeps"]), int(row["iterations"]))
             point = Point(int(row["steps_per_second"]), float(row["error"]),
                           float(row["us_per_s"]), row)
             ways = tree.setdefault(row["experiment"], {}).setdefault(
@@ -83,20 +83,19 @@ def order_of(points):
 
 
 def label_of(way, of_integrators=False):
-    integrator, solver, substeps, iterations = way
+    integrator, substeps, iterations = way
     if of_integrators:
         return integrator
-    return f"{solver}, {substeps} x {iterations}"
+    return f"{substeps} x {iterations}"
 
 
 def style_of(way):
-    integrator, solver, substeps, iterations = way
-    palette = {1: "Blues", 4: "Purples", 8: "Greys"} if solver == "impulse" else {
-        1: "Reds", 2: "Oranges", 4: "YlOrBr", 8: "RdPu"}
+    integrator, substeps, iterations = way
+    palette = {1: "Blues", 2: "Reds", 4: "Purples", 8: "Greys"}
     depth = {5: 0.4, 10: 0.7, 40: 1.0}.get(iterations, 0.7)
     color = "tab:green" if integrator == "euler" else plt.get_cmap(palette[substeps])(depth)
     return {"color": color, "marker": "o^sDvP"[[1, 2, 4, 8].index(substeps)],
-            "ls": "-" if solver == "impulse" else "--", "ms": 4.5, "lw": 1.2}
+            "ms": 4.5, "lw": 1.2}
 
 
 def plot(name, quantities, path):
@@ -134,7 +133,7 @@ def plot(name, quantities, path):
     figure.tight_layout(rect=(0, 1 / height, 1, 1))
     handles, labels = grid.flat[0].get_legend_handles_labels()
     if len(labels) > 1:
-        way = "integrator" if of_integrators else "solver, sub-steps x iterations"
+        way = "integrator" if of_integrators else "sub-steps x iterations"
         figure.legend(handles, labels, loc="lower center", ncol=5, fontsize=8,
                       title=f"{way}; points: steps a second, rising to the right",
                       title_fontsize=8)
@@ -203,7 +202,7 @@ def report_ways(head, tree, folder):
     front = [r for r in ratios
              if not any(o[2] <= r[2] and o[3] <= r[3] and o != r for o in ratios)]
     front.sort(key=lambda r: r[2])
-    header = ["integrator", "solver", "substeps", "iterations"]
+    header = ["integrator", "substeps", "iterations"]
     write_csv(f"{folder}/pareto.csv", head,
               header + ["steps_per_second", "time_ratio", "error_ratio", "on_front"],
               [[*way, steps, f"{time:.3f}", f"{error:.3f}", int((way, steps, time, error) in front)]
@@ -220,7 +219,7 @@ def report_ways(head, tree, folder):
                       textcoords="offset points")
     axes.step([r[2] for r in front], [r[3] for r in front], where="post", color="gold", lw=6,
               alpha=0.5, zorder=0, label="Pareto front")
-    axes.set_xlabel("run time over the default's (impulse, 1 x 10 at most, 240 steps a second)")
+    axes.set_xlabel("run time over the default's (1 x 10 at most, 240 steps a second)")
     axes.set_ylabel("error over the default's")
     axes.set_title(f"Geometric means over {count} experiments; the number is the most steps a second",
                    fontsize=10)
@@ -229,7 +228,7 @@ def report_ways(head, tree, folder):
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
         axis.set_minor_formatter(NullFormatter())
-    axes.legend(fontsize=8, title="solver, sub-steps x iterations", title_fontsize=8)
+    axes.legend(fontsize=8, title="sub-steps x iterations", title_fontsize=8)
     save(figure, f"{folder}/pareto.png")
 
 
@@ -249,7 +248,7 @@ def report(head, path, folder):
                 orders.append([name, quantity, unit, *way, order_of(points),
                                *(f"{at[s].error:.2g}" if s in at else "" for s in (60, 240, 960))])
     write_csv(f"{folder}/orders.csv", head,
-              ["experiment", "quantity", "unit", "integrator", "solver", "substeps", "iterations",
+              ["experiment", "quantity", "unit", "integrator", "substeps", "iterations",
                "order", "error_60", "error_240", "error_960"], orders)
     report_ways(head, tree, folder)
 

@@ -23,15 +23,15 @@ FALLEN = 250  # [mm]
 STYLES = {
     "bullet": ("tab:blue", "o", "-"),
     "ode": ("tab:gray", "s", "-"),
-    "tesserae impulse": ("tab:red", "D", "-"),
-    "tesserae impulse, all sweeps": ("tab:orange", "v", ":"),
-    "tesserae impulse, by steps": ("tab:purple", "^", "--"),
-    "tesserae soft, sub-steps of 1": ("tab:olive", "P", "--"),
-    "tesserae soft, sub-steps of 2": ("tab:green", "X", "--"),
+    "tesserae": ("tab:red", "D", "-"),
+    "tesserae, all sweeps": ("tab:orange", "v", ":"),
+    "tesserae, by steps": ("tab:purple", "^", "--"),
+    "tesserae, sub-steps of 1": ("tab:olive", "P", "--"),
+    "tesserae, sub-steps of 2": ("tab:green", "X", "--"),
 }
-DEFAULT = ("tesserae impulse", 240, 1, 10)
+DEFAULT = ("tesserae", 240, 1, 10)
 # What a point's number counts along its curve.
-COUNTED = {"tesserae impulse, by steps": "steps_per_second"}
+COUNTED = {"tesserae, by steps": "steps_per_second"}
 
 
 def number_of(row):
@@ -49,8 +49,8 @@ def curves_of(rows):
     curves = {}
     for row in rows:
         curves.setdefault(row["curve"], []).append(row)
-    by_steps = curves["tesserae impulse, by steps"]
-    by_steps += [dict(r, curve="tesserae impulse, by steps") for r in rows if key_of(r) == DEFAULT]
+    by_steps = curves["tesserae, by steps"]
+    by_steps += [dict(r, curve="tesserae, by steps") for r in rows if key_of(r) == DEFAULT]
     by_steps.sort(key=lambda r: float(r["steps_per_second"]))
     return curves
 

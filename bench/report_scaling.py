@@ -20,7 +20,7 @@ from report_accuracy import save, write_csv
 
 STAGES = ["advance_first_half", "find_pairs", "find_contacts", "build_islands",
           "solve_blows", "integrate_velocities", "solve_islands", "advance_second_half",
-          "relax_islands", "finish_step"]
+          "drop_corrections", "finish_step"]
 TIMES = ["step"] + STAGES
 COLORS = dict(zip(STAGES, plt.get_cmap("tab10").colors))
 

@@ -65,8 +65,8 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     tesserae::solve_coloured_island(simulation, step, island, AllThreads{});
 }
 
-void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {
-    tesserae::relax_coloured_island(simulation, step, island, AllThreads{});
+void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island) {
+    tesserae::drop_coloured_correction(simulation, step, island, AllThreads{});
 }
 
 }  // namespace tesserae::parallel

@@ -19,7 +19,7 @@ class IslandGraph {
     IslandGraph(const IslandGraph&) = delete;
     IslandGraph& operator=(const IslandGraph&) = delete;
 
-    /// Of one island: core's solve_island() or relax_island(), and their like for coloured ones.
+    /// Of one island: core's solve_island() or drop_correction(), and their like for coloured ones.
     using Work = void(const Simulation&, StepData&, std::size_t island);
     /// Does the work for all islands of the step; every message is a span of the trace.
     void run(const Simulation& simulation, StepData& step, Work& of_plain, Work& of_coloured,

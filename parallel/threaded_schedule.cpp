@@ -32,8 +32,8 @@ void ThreadedSchedule::solve_islands(const Simulation& simulation, StepData& ste
     island_graph_.run(simulation, step, solve_island, solve_coloured_island, trace_);
 }
 
-void ThreadedSchedule::relax_islands(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, relax_island, relax_coloured_island, trace_);
+void ThreadedSchedule::drop_corrections(const Simulation& simulation, StepData& step) {
+    island_graph_.run(simulation, step, drop_correction, drop_coloured_correction, trace_);
 }
 
 }  // namespace tesserae::parallel

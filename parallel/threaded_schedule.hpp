@@ -26,7 +26,7 @@ class ThreadedSchedule : public Schedule {
     void choose_pairs(const Simulation& simulation, StepData& step) override;
     void solve_blows(const Simulation& simulation, StepData& step) override;
     void solve_islands(const Simulation& simulation, StepData& step) override;
-    void relax_islands(const Simulation& simulation, StepData& step) override;
+    void drop_corrections(const Simulation& simulation, StepData& step) override;
 
   private:
     KeptPairs kept_pairs_;

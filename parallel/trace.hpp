@@ -8,7 +8,8 @@
 
 namespace tesserae::parallel {
 
-/// The name of a message of islands, within solve_islands or relax_islands. Its size is contacts.
+/// The name of a message of islands, within solve_islands or drop_corrections. Its size is
+/// contacts.
 inline constexpr const char* kIslandsSpan = "islands";
 
 /// Records which thread did what when, to see how the work of a step overlaps. At most a million

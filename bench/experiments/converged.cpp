@@ -29,21 +29,18 @@ Bodies end_of(const Bodies& bodies, const Knobs& knobs, double duration) {
 }
 
 /// The converged run, made once per experiment, and how far it can be trusted: the larger change
-/// by half its steps and half its iterations, and by the other solver.
+/// by half its steps and half its iterations, and by four sub-steps a step.
 struct Converged {
     Bodies end;
     double doubt;  ///< [m]
 };
 
 Converged converge(const Bodies& bodies, double duration) {
-    const Knobs fine{.solver = Solver::kImpulse,
-                     .iterations = kFineIterations,
-                     .tolerance = 0,
-                     .steps_per_second = kFineSteps};
+    const Knobs fine{.iterations = kFineIterations, .tolerance = 0, .steps_per_second = kFineSteps};
     Knobs half = fine, other = fine;
     half.iterations /= 2;
     half.steps_per_second /= 2;
-    other.solver = Solver::kSoft;
+    other.substeps = 4;
     const Bodies end = end_of(bodies, fine, duration);
     return {end, std::max(distance(end, end_of(bodies, half, duration)),
                           distance(end, end_of(bodies, other, duration)))};

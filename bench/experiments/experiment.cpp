@@ -14,7 +14,6 @@ PhysicsSettings settings_of(double duration, const Knobs& knobs, const Vec4& gra
     settings.substeps = knobs.substeps;
     settings.iterations = knobs.iterations;
     settings.tolerance = knobs.tolerance;
-    settings.solver = knobs.solver;
     settings.integrator = knobs.integrator;
     return settings;
 }

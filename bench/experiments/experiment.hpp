@@ -19,7 +19,6 @@ inline const Vec4 kDown{0, -kGravity, 0, 0};
 /// What is varied to trade error for run time.
 struct Knobs {
     RotationIntegrator integrator = PhysicsSettings{}.integrator;
-    Solver solver = PhysicsSettings{}.solver;
     int substeps = PhysicsSettings{}.substeps;       ///< a step
     int iterations = PhysicsSettings{}.iterations;   ///< a sub-step
     double tolerance = PhysicsSettings{}.tolerance;  ///< [m/s]

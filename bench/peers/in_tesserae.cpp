@@ -81,7 +81,7 @@ class InTesserae : public PeerEngine {
         times.iterate = of.at(Stage::kSolveIslands) - times.make_rows;
         for (const Stage other :
              {Stage::kAdvanceFirstHalf, Stage::kSolveBlows, Stage::kIntegrateVelocities,
-              Stage::kAdvanceSecondHalf, Stage::kRelaxIslands, Stage::kFinishStep})
+              Stage::kAdvanceSecondHalf, Stage::kDropCorrections, Stage::kFinishStep})
             times.others += of.at(other);
         return times;
     }

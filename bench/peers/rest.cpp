@@ -1,4 +1,4 @@
-// How still piles of boxes stand after ten seconds, and what a step costs: tesserae's solvers by
+// How still piles of boxes stand after ten seconds, and what a step costs: tesserae by
 // sweeps, sub-steps and steps a second beside Bullet and ODE by sweeps. See README.md.
 //   rest [SCENE...]     board_stacks, box_wall, box_pyramid; default: all
 
@@ -33,7 +33,7 @@ struct Way {
 };
 
 Way way_of_tesserae(const std::string& curve, const PhysicsSettings& settings) {
-    return {"tesserae " + curve,
+    return {"tesserae" + curve,
             4,
             settings.steps_per_second,
             settings.substeps,
@@ -51,24 +51,23 @@ std::vector<Way> all_ways() {
         if (n < 80)
             ways.push_back({"ode", 3, steps, 1, n, 0,
                             [n](const PeerScene& scene) { return make_ode(scene, n); }});
-        PhysicsSettings impulse;
-        impulse.iterations = n;
-        if (n > 5) ways.push_back(way_of_tesserae("impulse", impulse));
-        impulse.tolerance = 0;
-        if (n < 80) ways.push_back(way_of_tesserae("impulse, all sweeps", impulse));
+        PhysicsSettings settings;
+        settings.iterations = n;
+        if (n > 5) ways.push_back(way_of_tesserae("", settings));
+        settings.tolerance = 0;
+        if (n < 80) ways.push_back(way_of_tesserae(", all sweeps", settings));
     }
     for (const double rate : {60.0, 120.0, 480.0}) {
-        PhysicsSettings impulse;
-        impulse.steps_per_second = rate;
-        ways.push_back(way_of_tesserae("impulse, by steps", impulse));
+        PhysicsSettings settings;
+        settings.steps_per_second = rate;
+        ways.push_back(way_of_tesserae(", by steps", settings));
     }
     for (const int n : {1, 2})
-        for (const int substeps : {1, 2, 4, 8}) {
-            PhysicsSettings soft;
-            soft.solver = Solver::kSoft;
-            soft.iterations = n;
-            soft.substeps = substeps;
-            ways.push_back(way_of_tesserae(fmt::format("soft, sub-steps of {}", n), soft));
+        for (const int substeps : {2, 4, 8}) {
+            PhysicsSettings settings;
+            settings.iterations = n;
+            settings.substeps = substeps;
+            ways.push_back(way_of_tesserae(fmt::format(", sub-steps of {}", n), settings));
         }
     return ways;
 }

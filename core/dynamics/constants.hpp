@@ -36,7 +36,7 @@ constexpr double kTouch = 0.005;
 /// slides slowly stands on where it was; less, and what hardly moves costs as much as what does.
 constexpr double kKeptMotion = 0.001;
 
-/// Gap that rests with Solver::kImpulse, in the slop of the pair, usual 0.02: what is less than
+/// Gap that rests, in the slop of the pair, usual 0.02: what is less than
 /// this apart is kept there and need not close. 0, and points that bear a load open and close
 /// whenever a wall trembles, and keep it trembling (20 to 40 sweeps a step instead of 8); more, and
 /// bodies stop visibly above what they come to rest on.
@@ -46,7 +46,7 @@ constexpr double kRestingGap = 0.02;
 /// not touch take the places of those that do; less, and only slower bodies keep theirs.
 constexpr double kKeptMargin = 2;
 
-/// Part of an overlap that a sub-step of Solver::kImpulse removes (f in the bias -(f/h) min(0, s +
+/// Part of an overlap that a sub-step removes (f in the bias -(f/h) min(0, s +
 /// a)), and by which its push moves bodies, see is_pushed(); usual 0.2 where there is no push.
 /// Towards 1 stacks jump and bodies that start inside each other are thrown apart, towards 0 a wall
 /// of 20 rows topples at 10 sweeps. Without a push it trembles, by 8 to 17 mm/s at 20 sweeps
@@ -82,10 +82,6 @@ constexpr std::size_t kPushWork = 20000, kMostPushSweeps = 32;
 /// are thrown (without bounds one of 209 heaps wins 8 % of its energy); less of the second, and
 /// what spins fast sinks in.
 constexpr double kGivenBack = 4, kGivenBackOfTurning = 1e-4;
-
-/// The spring of Solver::kSoft: cycles in a sub-step, usual 0.25, and the part of critical damping,
-/// usual 10 (E. Catto, "Solver2D", 2024). Stiffer, and stacks jump; softer, and they sink.
-constexpr double kSpringCycles = 0.25, kSpringDamping = 10;
 
 /// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second (and
 /// what gravity adds in a sub-step): so that those that start deep inside each other do not

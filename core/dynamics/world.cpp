@@ -63,7 +63,7 @@ StepReport World::step(double dt, Schedule& schedule) {
         solve_islands(schedule);         // what rests: sequential impulses, warm started
         advance_second_half(schedule);   // rotors projected to unit rotors
         stop_at_impacts(schedule, Impacts::Half::kSecond);
-        relax_islands(schedule);  // soft contacts give back the velocity that removed overlap
+        drop_corrections(schedule);  // what only took overlap away is in no velocity
     }
     return finish_step(schedule);
 }
@@ -196,9 +196,9 @@ void World::stop_at_impacts(Schedule& schedule, Impacts::Half half) {
     impacts_.stop(simulation_, step_, schedule, half);
 }
 
-void World::relax_islands(Schedule& schedule) {
-    const Observed stage(*this, Stage::kRelaxIslands, step_.islands.size());
-    schedule.relax_islands(simulation_, step_);
+void World::drop_corrections(Schedule& schedule) {
+    const Observed stage(*this, Stage::kDropCorrections, step_.islands.size());
+    schedule.drop_corrections(simulation_, step_);
     if (step_.substep + 1 < simulation_.settings.substeps) keep_impulses(schedule);
 }
 

@@ -54,7 +54,7 @@ class World {
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
     void stop_at_impacts(Schedule& schedule, Impacts::Half half);
-    void relax_islands(Schedule& schedule);
+    void drop_corrections(Schedule& schedule);
     void keep_impulses(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
     void require_finite(Schedule& schedule) const;

@@ -124,7 +124,7 @@ std::string finishing_command(const FilmStatus& status, const Scene& scene, cons
 
 FilmStatus film_status(const fs::path& folder) {
     const fs::path scene_file = scene_file_of(folder);
-    const Scene scene = load_scene(scene_file, {});
+    const Scene scene = scene_of_film(scene_file);
     const bool moves = make_plan(scene, 1).moves;
     const int motion_version = motion_version_of(folder, moves);
     FilmStatus status;

@@ -9,6 +9,8 @@
 #include "render/file/preview_file.hpp"
 #include "render/file/whole_image.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/load.hpp"
+#include "scenes/load/scene_text.hpp"
 #include "scenes/load/versions.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/timeline.hpp"
@@ -25,6 +27,11 @@ bool shows_end(const Scene& scene, int frame) {
     return frame_instant(scene, frame).step == last ||
            (scene.camera.shutter > 0 && closing_instant(scene, frame).step == last) ||
            (scene.render.channels.motion && !has_frame(scene, frame + 1));
+}
+
+/// What a frame shows of an effective text.
+std::string shown_text(const Scene& scene, const std::string& effective, int frame) {
+    return shows_end(scene, frame) ? effective : without_duration(effective);
 }
 
 /// How a frame that has another hash differs from those that would be made of a scene.
@@ -53,6 +60,10 @@ std::string read_file(const fs::path& file) {
     return bytes.str();
 }
 
+Scene scene_of_film(const fs::path& file) {
+    return load_scene_text(file, without_solver(read_scene_file(file)), {});
+}
+
 void create_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -71,7 +82,7 @@ void create_folder_of(const fs::path& file) {
 std::string require_folder_of(const Scene& scene, const fs::path& folder, Replace replace) {
     const fs::path file = folder / kSceneFile;
     if (replace == Replace::kAll || !fs::exists(file)) return {};
-    const std::string other = read_file(file);
+    const std::string other = without_solver(read_file(file));
     std::string difference = first_difference(other, scene.effective);
     if (difference.empty()) return {};
     if (replace == Replace::kOtherLooks) {
@@ -86,15 +97,18 @@ std::string require_folder_of(const Scene& scene, const fs::path& folder, Replac
 }
 
 std::string hash_of_frame(const Scene& scene, int frame, int picture_version, int motion_version) {
-    return frame_hash(shows_end(scene, frame) ? scene.effective : without_duration(scene.effective),
-                      picture_version, motion_version);
+    return frame_hash(shown_text(scene, scene.effective, frame), picture_version, motion_version);
 }
 
 bool is_frame_of(const Scene& scene, const render::ImageInfo& there, int frame) {
     const int picture = there.picture_version, motion = there.motion_version;
-    // The second is that of frames which were made before duration was left out.
-    return there.scene_hash == hash_of_frame(scene, frame, picture, motion) ||
-           there.scene_hash == frame_hash(scene.effective, picture, motion);
+    const std::string older = with_solver(scene.effective);
+    for (const std::string& text : {scene.effective, older})
+        // The second is that of frames which were made before duration was left out.
+        if (there.scene_hash == frame_hash(shown_text(scene, text, frame), picture, motion) ||
+            there.scene_hash == frame_hash(text, picture, motion))
+            return true;
+    return false;
 }
 
 std::vector<int> wanted_frames(const Scene& scene, const fs::path& folder) {

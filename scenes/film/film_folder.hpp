@@ -30,6 +30,10 @@ enum class Replace {
 std::string require_folder_of(const Scene& scene, const std::filesystem::path& folder,
                               Replace replace);
 
+/// The scene that a film's folder holds, also where an older program has put it there.
+/// @param file   the kSceneFile of a film, or of its jobs
+Scene scene_of_film(const std::filesystem::path& file);
+
 /// The bytes of a file.
 /// @throws RunError   with the path and the system's reason
 std::string read_file(const std::filesystem::path& file);

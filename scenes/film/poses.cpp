@@ -16,8 +16,11 @@ Poses::Poses(const Scene& scene, const std::vector<int>& frames,
     if (trajectory.empty()) return;
     trajectory_ = std::make_unique<TrajectoryReader>(trajectory);
     const TrajectoryHeader& header = trajectory_->header();
-    // A trajectory of another motion version shows the same scene: it is rendered as it is.
-    if (header.motion_hash != scenes::motion_hash(scene.effective, header.motion_version))
+    // A trajectory of another motion version or solver shows the same scene: it is rendered as it
+    // is.
+    const std::string hash = scenes::motion_hash(scene.effective, header.motion_version);
+    if (header.motion_hash != hash &&
+        scenes::motion_hash(without_solver(header.effective), header.motion_version) != hash)
         throw InputError(fmt::format(
             "{}: is a trajectory of another motion: {}; simulate this scene, or render "
             "the one that "

@@ -23,7 +23,6 @@ constexpr std::uint64_t kMaxBodies = 10'000'000;
 constexpr double kLeastMass = 1e-60, kLargestMass = 1e60;
 
 // In the order of the enumerations in core/dynamics/state/settings.hpp.
-constexpr std::string_view kSolvers[] = {"impulse", "soft"};
 constexpr std::string_view kRotationIntegrators[] = {"euler", "midpoint"};
 constexpr Flag<BodyType> kFixed[] = {{"position", &BodyType::fixed_position},
                                      {"rotation", &BodyType::fixed_rotation}};
@@ -44,6 +43,19 @@ struct FileName {
     void read(TableReader& reader, const char* key, std::string& name) const {
         if (reader.read(key, name) && !accepts(name)) reader.fail(key, kExpected);
     }
+};
+
+/// There is one way to solve contacts. Scenes may still name it; it is not written.
+struct OnlySolver {
+    static constexpr const char* kAllowed = "`\"impulse\"`";
+
+    void read(TableReader& reader, const char* key, std::string& name) const {
+        if (!reader.read(key, name) || name == "impulse") return;
+        reader.fail(key, name == "soft" ? "this solver was removed; remove the key: what rests "
+                                          "stands as still or stiller without it"
+                                        : "expected \"impulse\", the only solver");
+    }
+    void write(EffectiveWriter&, const char*, const std::string&) const {}
 };
 
 /// [scene]
@@ -73,8 +85,8 @@ void physics_keys(auto& self, const auto& visit) {
     visit({"substeps", "",
            "A step is solved in so many parts; pairs that touch are looked for once a step."},
           self.substeps, IntegerRange{1, 1000});
-    visit({"solver", "", "Overlap is removed by velocities, or by damped springs."}, self.solver,
-          Names{kSolvers});
+    std::string solver = "impulse";
+    visit({"solver", "", "There is one solver, which scenes need not name."}, solver, OnlySolver{});
     visit({"integrator", "",
            "A body turns freely with its angular momentum kept (euler), or its energy too "
            "(midpoint)."},

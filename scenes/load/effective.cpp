@@ -210,6 +210,20 @@ std::string without_duration(std::string_view effective) {
     return part_of(effective, Lines::kLook);
 }
 
+std::string without_solver(std::string text) {
+    const auto physics = text.find("[physics]\n");
+    if (physics == std::string::npos) return text;
+    const auto begin = text.find("\nsolver = ", physics);
+    if (begin >= text.find("\n\n", physics)) return text;  // npos too
+    return text.erase(begin, text.find('\n', begin + 1) - begin);
+}
+
+std::string with_solver(std::string effective) {
+    const auto next = effective.find("\nintegrator = ", effective.find("[physics]\n"));
+    if (next != std::string::npos) effective.insert(next, "\nsolver = \"impulse\"");
+    return effective;
+}
+
 std::string first_difference(const std::string& there, const std::string& here) {
     return difference(Walker(there, Lines::kAll), Walker(here, Lines::kAll));
 }

@@ -55,6 +55,12 @@ std::string motion_part(std::string_view effective);
 /// All lines of an effective scene but how long it lasts.
 std::string without_duration(std::string_view effective);
 
+/// An effective scene of a file, which may be older than this program, as this one writes it:
+/// [physics] had a key `solver`.
+std::string without_solver(std::string text);
+/// An effective scene as it was hashed while [physics] had a key `solver`.
+std::string with_solver(std::string effective);
+
 /// The bodies of two effective scenes of the same motion have the same names.
 bool same_body_names(std::string_view there, std::string_view here);
 

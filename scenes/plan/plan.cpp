@@ -69,7 +69,7 @@ bool any_motion(const Scene& scene) {
     return false;
 }
 
-/// What the solver does beyond its simplest: one sub-step a step, no relaxation, no sleeping.
+/// What the solver does beyond its simplest: one sub-step a step, no sleeping.
 void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits_floats,
                    Plan& plan) {
     plan.decide("friction", needs.friction, "contacts have tangent rows",
@@ -91,9 +91,6 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                                   : fmt::format("{} iterations each", physics.iterations);
     const std::string substeps = fmt::format("{} a step, {}", physics.substeps, until);
     plan.decide("sub-steps", physics.substeps > 1, substeps, substeps);
-    plan.decide("relaxation of soft contacts", physics.solver == Solver::kSoft,
-                "solver = \"soft\": velocity that only removes overlap is given back",
-                "solver = \"impulse\"");
     plan.decide("sleeping", physics.sleeping, "islands at rest are left out until touched",
                 "sleeping = false");
 }

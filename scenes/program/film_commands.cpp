@@ -344,7 +344,7 @@ void movie_command(const CommandLine& line) {
         throw InputError(fmt::format(
             "{}: has no {}: expected a folder that tesserae run or tesserae render has made",
             line.file.string(), kSceneFile));
-    const Scene scene = load_scene(text, {});
+    const Scene scene = scene_of_film(text);
     stop_gracefully_on_signals();
     const MovieReport report = make_movie(scene, line.file, line.quiet);
     print_result(line, to_json(report), movie_text(report));

@@ -8,6 +8,7 @@
 #include "parallel/threads.hpp"
 #include "scenes/compare/file_kind.hpp"
 #include "scenes/export/export.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plot/plot.hpp"
 #include "scenes/process/messages.hpp"
@@ -26,7 +27,8 @@ Scene scene_in(const CommandLine& line) {
     if (kind_of(line.file) != FileKind::kTrajectory)
         throw InputError(fmt::format("{}: expected a trajectory; tesserae simulate makes one",
                                      line.file.string()));
-    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
+    return load_scene_text(
+        line.file, without_solver(TrajectoryReader(line.file).header().effective), line.sets);
 }
 
 Json to_json(const ExportReport& report, const CommandLine& line) {

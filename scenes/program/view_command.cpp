@@ -5,6 +5,7 @@
 #include "scenes/compare/file_kind.hpp"
 #include "scenes/film/film_folder.hpp"
 #include "scenes/film/simulate.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/work.hpp"
@@ -19,7 +20,8 @@ namespace fs = std::filesystem;
 /// The scene that is shown: that of a scene file, or the one in a trajectory.
 Scene viewed_scene(const CommandLine& line, bool is_trajectory) {
     if (!is_trajectory) return load_scene(line.file, line.sets);
-    return load_scene_text(line.file, TrajectoryReader(line.file).header().effective, line.sets);
+    return load_scene_text(
+        line.file, without_solver(TrajectoryReader(line.file).header().effective), line.sets);
 }
 
 /// What view's own trajectories say that they were made by: these may be replaced, as pages may.

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/load/versions.hpp"
 #include "scenes/trajectory/body_datasets.hpp"
 #include "scenes/trajectory/dataset_storage.hpp"
 
@@ -275,6 +276,12 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
     if (hdf5::has_attribute(scene.get(), kMotionVersionName))
         hdf5::read_attribute(scene.get(), kMotionVersionName, H5T_NATIVE_INT,
                              &header.motion_version);
+    // A trajectory of the solver that was removed stays one of another motion.
+    if (std::string text = without_solver(header.effective);
+        text != header.effective && with_solver(text) == header.effective) {
+        header.motion_hash = motion_hash(text, header.motion_version);
+        header.effective = std::move(text);
+    }
     if (header.motion_version < 1)
         throw hdf5::Failure(std::string(kMotionVersionName) + ": is not a version from 1 on");
     const Handle creator = hdf5::open_group(file.get(), "/h5md/creator");

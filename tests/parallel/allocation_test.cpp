@@ -62,9 +62,9 @@ TEST(Allocations, AreCounted) {
 
 TEST(Allocations, AreNoneInASettledStep) {
     for (const bool sleeping : {false, true})
-        for (PhysicsSettings settings : {PhysicsSettings{}, soft_settings()}) {
+        for (PhysicsSettings settings : {PhysicsSettings{}, substepped_settings()}) {
             settings.sleeping = sleeping;
-            const double rolling = settings.solver == Solver::kSoft ? 0.01 : 0;
+            const double rolling = settings.substeps > 1 ? 0.01 : 0;
             World serial(resting_bodies(rolling), settings);
             EXPECT_EQ(allocations_after(serial, 60), 0u) << sleeping;
             ParallelWorld world(resting_bodies(rolling), settings);

@@ -89,16 +89,16 @@ void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, i
     EXPECT_GT(contacts, 100u) << name;
 }
 
-/// With each solver, and with and without sleeping.
+/// With one sub-step and several, and with and without sleeping.
 void expect_serial_bits(const Bodies& bodies, int steps, const std::string& name) {
     for (const bool sleeping : {false, true}) {
         PhysicsSettings settings;
         settings.sleeping = sleeping;
         expect_serial_bits(bodies, settings, steps, name + (sleeping ? ", sleeping" : ""));
-        settings = soft_settings();
+        settings = substepped_settings();
         settings.sleeping = sleeping;
         expect_serial_bits(bodies, settings, steps,
-                           name + (sleeping ? ", soft, sleeping" : ", soft"));
+                           name + (sleeping ? ", sub-steps, sleeping" : ", sub-steps"));
     }
 }
 

@@ -58,18 +58,17 @@ void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, i
     }
 }
 
-PhysicsSettings soft() {
+PhysicsSettings substepped() {
     PhysicsSettings settings;
-    settings.solver = Solver::kSoft;
     settings.substeps = 3;
     settings.iterations = 2;
     return settings;
 }
 
-TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSoftSubsteps) {
-    World serial(mixed_heap(), soft());
+TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSubsteps) {
+    World serial(mixed_heap(), substepped());
     for (int i = 0; i < 100; ++i) serial.step(1.0 / 80);
-    expect_serial_bits(mixed_heap(), soft(), 100, serial);
+    expect_serial_bits(mixed_heap(), substepped(), 100, serial);
 }
 
 /// Boxes, capsules and balls that slide over tiles, several to each seam.
@@ -110,10 +109,10 @@ void expect_serial_bits_of_rolling(const std::vector<int>& counts) {
 
     Bodies large = with_rolling_friction(mixed_heap(6 * 6 * 6 * 4, 6));
     for (BodyId id = 7; id < large.size(); ++id) large.position[id] *= 0.4;
-    World packed(large, soft());
+    World packed(large, substepped());
     for (int i = 0; i < 2; ++i) packed.step(1.0 / 80);
     EXPECT_GT(packed.memory().impulses.size(), kColouredFrom);
-    expect_serial_bits(large, soft(), 2, packed, counts);
+    expect_serial_bits(large, substepped(), 2, packed, counts);
 }
 
 TEST(RollingFriction, HasTheBitsOfTheSerialWorldInSmallAndLargeIslands) {
@@ -126,15 +125,11 @@ TEST(RollingFrictionSlow, HasTheBitsOfTheSerialWorldInSmallAndLargeIslands) {
 /// One island, with enough contacts to be coloured.
 TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     const Bodies bodies = packed_spheres([](int i) { return sphere_type(0.5, 1 + i % 3, 0.5); });
-    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
-        PhysicsSettings settings = soft();
-        settings.solver = solver;
-        World serial(bodies, settings);
-        std::uint64_t contacts = 0;
-        for (int i = 0; i < 6; ++i) contacts = serial.step(1.0 / 80).contacts;
-        EXPECT_GT(contacts, 2 * kColouredFrom);
-        expect_serial_bits(bodies, settings, 6, serial, {1, 2, 3, 4, 7, 16});
-    }
+    World serial(bodies, substepped());
+    std::uint64_t contacts = 0;
+    for (int i = 0; i < 6; ++i) contacts = serial.step(1.0 / 80).contacts;
+    EXPECT_GT(contacts, 2 * kColouredFrom);
+    expect_serial_bits(bodies, substepped(), 6, serial, {1, 2, 3, 4, 7, 16});
 }
 
 /// Boxes, capsules and spheres that overlap a little, and a large sphere that touches more of them
@@ -147,15 +142,12 @@ void expect_serial_bits_of_all_shapes(const std::vector<int>& counts) {
         bodies.position[id] *= 0.5;  // nearer, and the first loads are gains, of which none is left
     }
     add(bodies, sphere_type(2, 100, 0.5), {0, 1.5, 0, 0});
-    for (const Solver solver : {Solver::kImpulse, Solver::kSoft}) {
-        PhysicsSettings settings = soft();
-        settings.solver = solver;
-        settings.substeps = 2;
-        World serial(bodies, settings);
-        for (int i = 0; i < 2; ++i) serial.step(1.0 / 80);
-        EXPECT_GT(serial.memory().impulses.size(), 2 * kColouredFrom);
-        expect_serial_bits(bodies, settings, 2, serial, counts);
-    }
+    PhysicsSettings settings = substepped();
+    settings.substeps = 2;
+    World serial(bodies, settings);
+    for (int i = 0; i < 2; ++i) serial.step(1.0 / 80);
+    EXPECT_GT(serial.memory().impulses.size(), 2 * kColouredFrom);
+    expect_serial_bits(bodies, settings, 2, serial, counts);
 }
 
 TEST(LargeIsland, OfAllShapesHasTheBitsOfTheSerialWorld) {
@@ -174,7 +166,7 @@ TEST(SleepingStacks, HaveTheBitsOfTheSerialWorld) {
             {1.5 * (i / 2 % 5), 0.5 + i % 2, 1.5 * (i / 10), 0});
     for (int i = 0; i < 3; ++i)
         add(bodies, sphere_type(0.4, 20), {1.5 * i, 8, 1.5 * i, -6}, {0, 0, 0, 5});
-    PhysicsSettings settings = soft();
+    PhysicsSettings settings = substepped();
     settings.sleeping = true;
     World serial(bodies, settings);
     std::uint64_t most = 0, woken = 0;

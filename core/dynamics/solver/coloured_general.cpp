@@ -37,26 +37,6 @@ void take_recalled_general(const ColouredStage& stage, BatchRange batches) {
     }
 }
 
-void leave_whirling_general(const ColouredStage& stage, BatchRange batches) {
-    ColouredIslands& coloured = stage.step.coloured;
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const Batch& batch = coloured.general[i];
-        for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
-            const Contact& c = stage.step.contacts[batch.contact[k]];
-            if (!whirls(stage.simulation, stage.step, c.a) &&
-                !whirls(stage.simulation, stage.step, c.b))
-                continue;
-            for (std::uint32_t p = 0; p < batch.points[k]; ++p) {
-                coloured.rows[batch.row + p].along.mass.lane[k] = 0;
-                if (!coloured.friction) continue;
-                GeneralFriction& friction = coloured.general_friction[batch.row + p];
-                friction.slide_mass.lane[k] = 0;
-                for (RoughEight& mass : friction.mass) mass.lane[k] = 0;
-            }
-        }
-    }
-}
-
 namespace {
 
 /// A lane's angular impulse [N m s, world] of a row.

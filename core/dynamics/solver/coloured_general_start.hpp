@@ -299,7 +299,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         const Place<F> at = place_of(lane, row);
         const F normal_impulse =
             start_normal(lanes, load(in_pairs, pairs.points[k].along), batch.row + k, row.along,
-                         coloured.relax, coloured.impulses.normal);
+                         coloured.second, coloured.impulses.normal);
         const std::array<F, 4> unit = {F{} + 1.0f, at[0], at[1], at[2]};
         for (std::size_t i = 0; i < 4; ++i)
             impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);

@@ -23,7 +23,7 @@ struct alignas(32) EightPoints {
     Fours normal, r_a, r_b;
     Fours velocity;  ///< relative, of the start
     Fours impulse;   ///< the tangent one, to start from
-    Fours along;     ///< target, relax target, keep, normal impulse
+    Fours along;     ///< targets of both passes, whether there is one (1), normal impulse
     EightTurning turning;
 };
 

@@ -59,16 +59,10 @@ std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range 
 void add_changes(const ColouredStage& stage, Range bodies);
 /// Takes from them what was recalled, see take_recalled().
 void take_recalled_back(const ColouredStage& stage, Range bodies);
-/// Takes them back after the bodies have moved. Those that turn unevenly have changed their angular
-/// velocity, as if by an impulse, which ColouredIslands::angular_velocity then has.
-void take_changes_back(const ColouredStage& stage, Range bodies);
 
-/// Of the changes after that, without those by turning: twice their kinetic energy [J], and a part
-/// of them.
+/// Of the changes: twice their kinetic energy [J], and a part of them.
 double energy_of_changes(const ColouredStage& stage, Range bodies);
 void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part);
-/// Whether any of the bodies whirls().
-bool any_whirls(const ColouredStage& stage, Range bodies);
 
 /// Keeps the changes of the load; does not turn bodies of which turns_push() says so; takes back
 /// what the push changed.

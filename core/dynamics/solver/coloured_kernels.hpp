@@ -67,12 +67,10 @@ void start_general(const ColouredStage& stage, BatchRange batches, LaneCount lan
 double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
 void keep_general(const ColouredStage& stage, BatchRange batches);
 void take_recalled_general(const ColouredStage& stage, BatchRange batches);
-/// Of what whirls() nothing is taken back; bodies that are round on both sides do not.
-void leave_whirling_general(const ColouredStage& stage, BatchRange batches);
 
 /// See LoadWork::work [mass units m^2/s^2]: of the impulses of a batch's rows.
-double load_work_of_round(const ColouredStage& stage, std::uint32_t batch, Pass pass);
-double load_work_of_general(const ColouredStage& stage, std::uint32_t batch, Pass pass);
+double load_work_of_round(const ColouredStage& stage, std::uint32_t batch);
+double load_work_of_general(const ColouredStage& stage, std::uint32_t batch);
 void leave_part_of_round(const ColouredStage& stage, BatchRange batches, float part);
 void leave_part_of_general(const ColouredStage& stage, BatchRange batches, float part);
 

@@ -24,13 +24,12 @@ class PairNormals {
         : lane_(lane),
           lanes_{lane.template in_row<GeneralRow>(), lane.template in_row<Eight>()},
           rows_(&coloured.rows[batch.row]),
-          keep_(pass == Pass::kSolve ? keep_from(coloured.relax, batch.row) : nullptr),
           impulses_(&coloured.impulses.normal[batch.row]),
           response_(
               first_of<kResponses>(lane.in_responses(), &coloured.point_response[batch.response])),
           count_(batch.rows),
           change_{} {
-        see(&coloured.relax.target[batch.row], pass, motion, All());
+        see(&coloured.second[batch.row], pass, motion, All());
     }
 
     /// Once through all points.
@@ -48,9 +47,9 @@ class PairNormals {
 
   private:
     template <std::size_t... k>
-    [[gnu::always_inline]] void see(const Eight* relax_targets, Pass pass,
-                                    const std::array<F, 4>& motion, std::index_sequence<k...>) {
-        ((left_[k] = k < count_ ? target_of(lanes_, rows_[k].along, relax_targets[k], pass) -
+    [[gnu::always_inline]] void see(const Eight* second, Pass pass, const std::array<F, 4>& motion,
+                                    std::index_sequence<k...>) {
+        ((left_[k] = k < count_ ? target_of(lanes_, rows_[k].along, second[k], pass) -
                                       along_at(place_of(lane_, rows_[k]), motion)
                                 : F{}),
          ...);
@@ -65,8 +64,7 @@ class PairNormals {
     template <std::size_t k, bool kBackward, bool kFirst, std::size_t... j>
     [[gnu::always_inline]] void solve_point(bool measured, F& left, std::index_sequence<j...>) {
         if (k >= count_) return;
-        const F change = solve_normal(lanes_, rows_[k].along, keep_ ? keep_ + k : nullptr, left_[k],
-                                      impulses_[k]);
+        const F change = solve_normal(lanes_, rows_[k].along, left_[k], impulses_[k]);
         change_[k] += change;
         ((kFirst || (kBackward ? j < k : j > k)
               ? void(left_[j] = fused(-change, response(k, j), left_[j]))
@@ -92,7 +90,6 @@ class PairNormals {
     const Lane<F>& lane_;
     const NormalLanes<F> lanes_;
     const GeneralRow* const rows_;
-    const Eight* const keep_;
     Eight* const impulses_;
     const std::array<F, kResponses> response_;
     const std::uint32_t count_;

@@ -8,7 +8,6 @@ namespace {
 
 using namespace lanes;
 constexpr Lane<Float8> kEvery;
-constexpr NormalLanes<Float8> kRows;
 
 double sum_of(Float8 x) {
     double sum = 0;
@@ -31,11 +30,11 @@ void scale(std::array<Eight, kSize>& all, float by) {
 
 }  // namespace
 
-double load_work_of_round(const ColouredStage& stage, std::uint32_t batch, Pass pass) {
+double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
     const ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
-    Float8 work = -kEvery.load(normal[batch]) * target_of(kRows, coloured.round_rows[batch].along,
-                                                          coloured.round_relax.target[batch], pass);
+    Float8 work =
+        -kEvery.load(normal[batch]) * kEvery.load(coloured.round_rows[batch].along.target);
     if (coloured.friction)
         work += product(load_all(kEvery, coloured.round_friction[batch].slip), tangent[batch]);
     if (coloured.rolling) {
@@ -45,7 +44,7 @@ double load_work_of_round(const ColouredStage& stage, std::uint32_t batch, Pass 
     return sum_of(work);
 }
 
-double load_work_of_general(const ColouredStage& stage, std::uint32_t index, Pass pass) {
+double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const auto along = load_all(kEvery, coloured.frames[index].motion);
@@ -55,8 +54,7 @@ double load_work_of_general(const ColouredStage& stage, std::uint32_t index, Pas
     Float8 work{};
     for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
         const Place<Float8> at = place_of(kEvery, coloured.rows[row]);
-        const Float8 velocity = along_at(at, along) - target_of(kRows, coloured.rows[row].along,
-                                                                coloured.relax.target[row], pass);
+        const Float8 velocity = along_at(at, along) - kEvery.load(coloured.rows[row].along.target);
         work = fused(kEvery.load(coloured.impulses.normal[row]), velocity, work);
         if (coloured.friction) {
             const LaneVec4<Float8> slip = across_at(at, across);

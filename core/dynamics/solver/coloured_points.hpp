@@ -80,8 +80,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     put(v - along * c.normal, points.velocity[lane]);
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     put(per_mass_unit * impulse.tangent(), points.impulse[lane]);
-    put({targets.solve - along, targets.relax - along, targets.keep,
-         per_mass_unit * impulse.normal},
+    put({targets.first - along, targets.second - along, 1, per_mass_unit * impulse.normal},
         points.along[lane]);
 }
 
@@ -175,8 +174,6 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     const BodyId a = contact.a, b = contact.b;
     const PairTargets targets_of(simulation, step, contact, stage.cause,
                                  stage.parting.at(step, {first, first + count}));
-    // What is soft would take them back: see lower_rises().
-    const bool rises = simulation.settings.solver != Solver::kSoft;
     const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
     std::array<PairPoint, kManifoldPoints> points;
     points[0] = {contact.point, contact.separation};
@@ -201,15 +198,15 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
         const Vec4 place = points[p].place - centre;
         const double along =
             targets_of.need_velocity() ? contact.normal.dot(v + velocity_at(turning, place)) : 0;
-        const double rise = rises ? rise_of(step, first + p) : 0;
-        const ContactTargets targets = targets_of.at(points[p].separation, along, rise);
+        const ContactTargets targets =
+            targets_of.at(points[p].separation, along, rise_of(step, first + p));
         put(place, point.place[lane]);
         const ContactImpulse impulse =
             stage.cause == Cause::kLoad ? step.impulses[first + p] : ContactImpulse{};
         const auto normal = static_cast<float>(per_mass_unit * impulse.normal);
         for (std::size_t i = 0; i < 4; ++i) point.impulse[lane][i] = normal * impulse.slope[i];
-        point.along[lane] = {static_cast<float>(targets.solve), static_cast<float>(targets.relax),
-                             static_cast<float>(targets.keep), normal};
+        point.along[lane] = {static_cast<float>(targets.first), static_cast<float>(targets.second),
+                             1, normal};
     }
 }
 

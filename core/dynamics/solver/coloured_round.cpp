@@ -35,7 +35,7 @@ template <bool kFriction, bool kRolling, class F>
     const LaneVec4<F> along = load(lane, points.along);
     make_normal(lane, along[2], response, F{}, row.along);
     const F normal_impulse = start_normal({lane, lane}, along, batch, row.along,
-                                          coloured.round_relax, coloured.round_impulses.normal);
+                                          coloured.round_second, coloured.round_impulses.normal);
     LaneVec4<F> impulse = normal_impulse * n;
     if constexpr (kFriction) {
         RoundFriction& friction = coloured.round_friction[batch];
@@ -131,8 +131,8 @@ void take_recalled_round(const ColouredStage& stage, BatchRange batches) {
         const Float8 along = dot(n, v);
         NormalRow& row = coloured.round_rows[i].along;
         lane.store(lane.load(row.target) - along, row.target);
-        Eight& relax_target = coloured.round_relax.target[i];
-        lane.store(lane.load(relax_target) - along, relax_target);
+        Eight& second = coloured.round_second[i];
+        lane.store(lane.load(second) - along, second);
         if (!coloured.friction) continue;
         RoundFriction& friction = coloured.round_friction[i];
         const LaneVec4<Float8> slip = slip_of(lane, n, v, along, friction, a, b);

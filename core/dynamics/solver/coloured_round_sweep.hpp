@@ -80,11 +80,8 @@ template <bool kFriction, bool kRolling, class F>
     const LaneVec4<F> v = b.velocity - a.velocity;
     const F along = dot(n, v);
     Eight& impulse = coloured.round_impulses.normal[batch];
-    const bool solves = sweep.pass == Pass::kSolve;
-    const F target = target_of(lanes, row.along, coloured.round_relax.target[batch], sweep.pass);
-    const F change =
-        solve_normal(lanes, row.along, solves ? keep_from(coloured.round_relax, batch) : nullptr,
-                     target - along, impulse);
+    const F target = target_of(lanes, row.along, coloured.round_second[batch], sweep.pass);
+    const F change = solve_normal(lanes, row.along, target - along, impulse);
     const F normal_impulse = lanes.in_list.load(impulse);
     LaneVec4<F> tangent_change{};
     F tangent_mass{};

@@ -14,49 +14,43 @@ struct NormalLanes {
     Lane<F> in_row, in_list;
 };
 
-/// @param keep       NormalPass::keep; 0 of points that a lane does not have, which keep nothing
+/// @param exists     1; 0 of points that a lane does not have
 /// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
 template <class F>
-[[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F keep, F response, F least,
+[[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F exists, F response, F least,
                                                NormalRow& row) {
     const F inverse = (F{} + 1.0f) / response;
-    lane.store(response > least ? (keep > F{} ? inverse : F{}) : F{}, row.mass);
+    lane.store(response > least ? (exists > F{} ? inverse : F{}) : F{}, row.mass);
 }
-/// @param fours   target, relax target, keep, normal impulse
-/// @param place   in `relax` and `impulses`
+/// @param fours   targets of the first and the second pass, whether it exists, normal impulse
+/// @param place   in `second` and `impulses`
 /// @return the impulse to start from
 template <class F>
 [[gnu::always_inline]] inline F start_normal(const NormalLanes<F>& lanes, const LaneVec4<F>& fours,
-                                             std::size_t place, NormalRow& row, NormalRelax& relax,
+                                             std::size_t place, NormalRow& row,
+                                             std::vector<Eight>& second,
                                              std::vector<Eight>& impulses) {
     lanes.in_row.store(fours[0], row.target);
-    lanes.in_list.store(fours[1], relax.target[place]);
-    if (!relax.keep.empty()) lanes.in_list.store(fours[2], relax.keep[place]);
+    lanes.in_list.store(fours[1], second[place]);
     lanes.in_list.store(fours[3], impulses[place]);
     return fours[3];
-}
-/// NormalPass::keep of a row and those behind it; null where contacts are rigid.
-inline const Eight* keep_from(const NormalRelax& relax, std::size_t place) {
-    return relax.keep.empty() ? nullptr : &relax.keep[place];
 }
 
 /// The normal velocity that a pass aims at, less that of the start.
 template <class F>
 [[gnu::always_inline]] inline F target_of(const NormalLanes<F>& lanes, const NormalRow& row,
-                                          const Eight& relax_target, Pass pass) {
-    return pass == Pass::kSolve ? lanes.in_row.load(row.target) : lanes.in_list.load(relax_target);
+                                          const Eight& second, Pass pass) {
+    return pass == Pass::kSolve ? lanes.in_row.load(row.target) : lanes.in_list.load(second);
 }
 /// One step of a normal impulse.
-/// @param keep   as of keep_from(); null in passes that need none
 /// @param left   of its target, less the change of the normal velocity
 /// @return its change
 template <class F>
 [[gnu::always_inline]] inline F solve_normal(const NormalLanes<F>& lanes, const NormalRow& row,
-                                             const Eight* keep, F left, Eight& impulse) {
+                                             F left, Eight& impulse) {
     const F old = lanes.in_list.load(impulse);
-    F change = lanes.in_row.load(row.mass) * left;
-    if (keep) change = lanes.in_list.load(*keep) * (old + change) - old;
-    change = larger(change, -old);  // sooner there than by the impulse
+    const F change =
+        larger(lanes.in_row.load(row.mass) * left, -old);  // sooner there than by the impulse
     lanes.in_list.store(old + change, impulse);
     return change;
 }

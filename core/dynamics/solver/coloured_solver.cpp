@@ -28,17 +28,6 @@ Vec4 velocity_change(const Change& change) {
     return assembled(v[0], v[1], v[2], v[3]);
 }
 
-/// Writes an angular velocity into a body's record, rounded to float. It is not inlined because
-/// g++ 12 would leave the rounding out: where it makes vectors of doubles that become floats and
-/// then doubles again, it takes the first doubles for the last ones. A body would then lose another
-/// change than the one that its record holds. tests/roundings.sh looks for such places.
-[[gnu::noinline]] void put_angular(const Bivector& w, BodyChange& change) {
-    const auto& [xy, xz, xw, yz, yw, zw] = w;
-    change.first_planes = {static_cast<float>(xy), static_cast<float>(xz), static_cast<float>(xw),
-                           static_cast<float>(yz)};
-    change.rest[0] = static_cast<float>(yw), change.rest[1] = static_cast<float>(zw);
-}
-
 InverseInertia packed(const BivectorMap& map, double factor) {
     InverseInertia inertia;
     std::size_t k = 0;
@@ -112,10 +101,8 @@ void add_changes(const ColouredStage& stage, Range bodies) {
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = step.coloured.bodies[i];
         step.velocity[id] += velocity_change(step.coloured.changes[i]);
-        if (!stage.simulation.needs.turning) continue;
-        step.angular_velocity[id] += angular_change(step.coloured.changes[i]);
-        if (!step.coloured.angular_velocity.empty())
-            step.coloured.angular_velocity[i] = step.angular_velocity[id];
+        if (stage.simulation.needs.turning)
+            step.angular_velocity[id] += angular_change(step.coloured.changes[i]);
     }
 }
 
@@ -128,12 +115,6 @@ void take_recalled_back(const ColouredStage& stage, Range bodies) {
         if (stage.simulation.needs.turning)
             step.angular_velocity[id] = step.angular_velocity[id] - angular_change(recalled);
     }
-}
-
-bool any_whirls(const ColouredStage& stage, Range bodies) {
-    const BodyId* const ids = stage.step.coloured.bodies.data();
-    return std::any_of(ids + bodies.begin, ids + bodies.end,
-                       [&](BodyId id) { return whirls(stage.simulation, stage.step, id); });
 }
 
 void begin_push(const ColouredStage& stage, Range bodies) {
@@ -173,35 +154,13 @@ void take_push_back(const ColouredStage& stage, Range bodies) {
     }
 }
 
-void take_changes_back(const ColouredStage& stage, Range bodies) {
-    StepData& step = stage.step;
-    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = step.coloured.bodies[i];
-        BodyChange& change = step.coloured.changes[i];
-        step.velocity[id] -= velocity_change(change);
-        if (!stage.simulation.needs.turning) continue;
-        Bivector& turned = step.coloured.angular_velocity[i];
-        turned = step.angular_velocity[id] - turned;
-        put_angular(angular_change(change) + turned, change);
-        step.angular_velocity[id] = step.angular_velocity[id] - angular_change(change);
-    }
-}
-
-namespace {
-/// How a body's turning has changed its angular velocity where take_changes_back() was.
-Bivector turned_by(const ColouredIslands& coloured, std::size_t body) {
-    return coloured.angular_velocity.empty() ? Bivector{} : coloured.angular_velocity[body];
-}
-}  // namespace
-
 double energy_of_changes(const ColouredStage& stage, Range bodies) {
     const ColouredIslands& coloured = stage.step.coloured;
     double sum = 0;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyChange& change = coloured.changes[i];
         BodyMotion motion = {velocity_change(change), {}};
-        if (stage.simulation.needs.turning)
-            motion.angular_velocity = angular_change(change) - turned_by(coloured, i);
+        if (stage.simulation.needs.turning) motion.angular_velocity = angular_change(change);
         sum += twice_kinetic_energy(stage.simulation, stage.step, coloured.bodies[i], motion);
     }
     return sum;
@@ -212,9 +171,8 @@ void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part)
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         BodyChange& change = coloured.changes[i];
         for (float& v : change.velocity) v *= part;
-        if (!stage.simulation.needs.turning) continue;
-        const Bivector turned = turned_by(coloured, i);
-        put_angular(double{part} * (angular_change(change) - turned) + turned, change);
+        for (float& w : change.first_planes) w *= part;
+        change.rest[0] *= part, change.rest[1] *= part;
     }
 }
 

@@ -69,19 +69,19 @@ void start_coloured(const ColouredIsland& island, const Threads& threads, LaneCo
         });
 }
 
-/// Of the impulses as they are, with the targets of a pass.
-inline double work_of_load(const ColouredIsland& island, Pass pass) {
+/// Of the impulses as they are.
+inline double work_of_load(const ColouredIsland& island) {
     const ColouredStage& stage = island.stage();
     double work = 0;
     for_all_rows(
         island, OneThread{},
         [&](BatchRange all) {
             for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_round(stage, i, pass);
+                work += load_work_of_round(stage, i);
         },
         [&](BatchRange all) {
             for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_general(stage, i, pass);
+                work += load_work_of_general(stage, i);
         });
     return stage.mass_unit * work;
 }
@@ -98,15 +98,15 @@ double energy_of_load(const ColouredIsland& island, const Threads& threads) {
 }
 
 template <class Threads>
-LoadWork load_of(const ColouredIsland& island, const Threads& threads, Pass pass) {
-    return {work_of_load(island, pass), energy_of_load(island, threads)};
+LoadWork load_of(const ColouredIsland& island, const Threads& threads) {
+    return {work_of_load(island), energy_of_load(island, threads)};
 }
 
 /// Instead of a load that is a gain: the part of the last one that takes the most energy.
 template <class Threads>
 void leave_best_of_recalled(const ColouredIsland& island, const Threads& threads, LaneCount lanes) {
     start_coloured(island, threads, lanes);
-    const LoadWork load = load_of(island, threads, Pass::kSolve);
+    const LoadWork load = load_of(island, threads);
     if (load.energy > 0) leave_part_of_load(island, threads, load.best_part());
 }
 
@@ -242,21 +242,10 @@ void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size
     threads.for_bodies(range, [&](Range some) { keep_blow_motion(stage, some); });
     // Where all that hit each other return alike, that much more is all of it.
     if (bounces) leave_part_of_load(coloured, threads, 1 + std::min(1.0, blow.returned));
-    iterate_coloured(coloured, Pass::kRelax, effort, threads, lanes);
+    iterate_coloured(coloured, Pass::kRestitution, effort, threads, lanes);
     threads.for_bodies(range, add);
     limit_restitution(coloured, blow, threads);
     keep_coloured(coloured, threads);
-}
-
-/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
-/// @return whether they were
-template <class Threads>
-bool end_gain(const ColouredIsland& island, const Threads& threads, const Overlap& overlap) {
-    if (!overlap.any) return false;
-    const LoadWork load = load_of(island, threads, Pass::kRelax);
-    if (!load.is_gain(overlap.weight)) return false;
-    leave_part_of_load(island, threads, load.best_part());
-    return true;
 }
 
 /// What the load starts from has acted; see kRecalledWeight.
@@ -267,7 +256,7 @@ void leave_recalled(const ColouredIsland& island, const Threads& threads) {
     const double weight = energy_of_fall(simulation, step, island.number());
     const double energy = energy_of_load(island, threads);
     if (!(0.5 * energy > LoadWork::least_of_stop(weight))) return;
-    const LoadWork load = {work_of_load(island, Pass::kSolve), energy};
+    const LoadWork load = {work_of_load(island), energy};
     if (load.is_too_much(weight, is_stopped(simulation, step, island.number())))
         leave_part_of_load(island, threads, load.best_part());
 }
@@ -276,7 +265,6 @@ void leave_recalled(const ColouredIsland& island, const Threads& threads) {
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = most_lanes()) {
-    const bool impulse = simulation.settings.solver == Solver::kImpulse;
     hold_still(simulation, step, island);
     if (is_pushed(simulation, step, island)) step.pushed[island] = Push::kAll;
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
@@ -288,13 +276,12 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
             leave_best_of_recalled(coloured, threads, lanes);
         });
     } else {
-        if (impulse) leave_recalled(coloured, threads);
+        leave_recalled(coloured, threads);
         step.residual[island] = iterate_coloured(coloured, Pass::kSolve, effort, threads, lanes);
-        if (impulse && step.residual[island] > effort.enough &&
-            load_of(coloured, threads, Pass::kSolve).is_gain(0))
+        if (step.residual[island] > effort.enough && load_of(coloured, threads).is_gain())
             leave_best_of_recalled(coloured, threads, lanes);
     }
-    if (impulse) keep_coloured(coloured, threads);
+    keep_coloured(coloured, threads);
     if (step.pushed[island] != Push::kNone) {
         threads.for_bodies(coloured.bodies(), [&](Range bodies) { begin_push(stage, bodies); });
         iterate_coloured(coloured, Pass::kPush,
@@ -304,32 +291,14 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
 }
 
-/// relax_island() of a coloured island.
+/// drop_correction() of a coloured island.
 template <class Threads>
-void relax_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
-                           const Threads& threads, LaneCount lanes = most_lanes()) {
+void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
+                              const Threads& threads) {
+    if (step.pushed[island] == Push::kNone) return;
     const ColouredIsland coloured(simulation, step, island, Cause::kLoad);
-    const ColouredStage& stage = coloured.stage();
-    if (simulation.settings.solver == Solver::kSoft) {
-        const bool whirls = any_whirls(stage, coloured.bodies());
-        if (whirls)
-            for_all_rows(
-                coloured, threads, [](BatchRange) {},
-                [&](BatchRange some) { leave_whirling_general(stage, some); });
-        threads.for_bodies(coloured.bodies(),
-                           [&](Range bodies) { take_changes_back(stage, bodies); });
-        const auto relax = [&] {
-            return iterate_coloured(coloured, Pass::kRelax,
-                                    effort_of_load(simulation, step, island), threads, lanes);
-        };
-        step.residual[island] = relax();
-        if (!whirls && end_gain(coloured, threads, overlap_of(simulation, step, island)))
-            step.residual[island] = relax();
-        threads.for_bodies(coloured.bodies(), [&](Range bodies) { add_changes(stage, bodies); });
-        keep_coloured(coloured, threads);
-    }
-    if (step.pushed[island] != Push::kNone)
-        threads.for_bodies(coloured.bodies(), [&](Range bodies) { take_push_back(stage, bodies); });
+    threads.for_bodies(coloured.bodies(),
+                       [&](Range bodies) { take_push_back(coloured.stage(), bodies); });
 }
 
 }  // namespace tesserae

@@ -177,7 +177,6 @@ void put_columns(const BivectorMap& map, double factor, BodyInertia& to) {
 }  // namespace
 
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
-    if (simulation.settings.solver != Solver::kImpulse) return false;
     const Needs& needs = simulation.needs;
     if (needs.very_rough && friction_of(simulation, a, b) > kMostConjugateFriction) return false;
     return !needs.rolling || rolling_arm_of(simulation, a, b) == 0;

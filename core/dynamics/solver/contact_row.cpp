@@ -35,7 +35,7 @@ void set_masses(const Simulation& simulation, const StepData& step, ContactRow& 
     const double rounding = least_response(simulation, row.a, row.b);
     row.normal_response = both(n);
     const double along = n.dot(row.normal_response);
-    row.relax.mass = along > rounding ? 1 / along : 0;
+    row.normal_mass = along > rounding ? 1 / along : 0;
 
     row.tangent_mass.setZero();
     if (row.friction == 0) return;
@@ -60,12 +60,6 @@ double least_response(const Simulation& simulation, BodyId a, BodyId b) {
     const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
     const double moves = type_a.inverse_mass + type_b.inverse_mass;
     return kNoResponse * (moves > 0 ? moves : greatest_turn(type_a) + greatest_turn(type_b));
-}
-
-bool whirls(const Simulation& simulation, const StepData& step, BodyId id) {
-    const TypeProperties& type = simulation.type_of(id);
-    return type.arm > 0 &&
-           0.5 * step.h * type.arm * norm(step.angular_velocity[id]) > kDeepest / kSlop * type.slop;
 }
 
 bool turns_push(const Simulation& simulation, const StepData& step, BodyId id,
@@ -98,11 +92,8 @@ void start_row(const Simulation& simulation, const StepData& step, const Contact
                const Parting& parting, ContactRow& row) {
     const Vec4 v =
         relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-    const ContactTargets targets =
-        PairTargets(simulation, step, contact, cause, parting)
-            .at(contact.separation, row.normal.dot(v), rise_of(step, place));
-    row.relax.target = targets.relax;
-    row.solve = {targets.keep * row.relax.mass, targets.keep, targets.solve};
+    row.targets = PairTargets(simulation, step, contact, cause, parting)
+                      .at(contact.separation, row.normal.dot(v), rise_of(step, place));
 
     row.slip_by_turning.setZero();
     if (row.friction > 0)

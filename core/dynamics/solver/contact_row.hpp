@@ -13,11 +13,6 @@ double friction_of(const Simulation& simulation, BodyId a, BodyId b);
 /// can move (a sphere whose position is fixed, pushed through its centre) [1/kg].
 double least_response(const Simulation& simulation, BodyId a, BodyId b);
 
-/// Whether a body's surface has turned by more in half a sub-step than is left to the solver. What
-/// the soft solver takes back would be along directions that have turned away: of what whirls
-/// nothing is, or its energy would grow without bound.
-bool whirls(const Simulation& simulation, const StepData& step, BodyId id);
-
 /// Whether a body turns in the rest of the sub-step so that what a push has changed of its turning
 /// has much more energy when it is given back, see kGivenBack: a needle that was rolled a little
 /// about its length would be thrown across it.

@@ -52,12 +52,11 @@ struct RowChange {
 /// The normal first and then friction, so that no contact ends with more of it than its normal
 /// impulse allows; what the normal impulse does to the slip is known from the row, so that the
 /// bodies' velocities are read and written once.
-template <NormalPass ContactRow::*kPass, bool kTurning, bool kFriction>
+template <double ContactTargets::*kTarget, bool kTurning, bool kFriction>
 RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
-    const NormalPass& pass = row.*kPass;
     const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
-    const double normal = std::max(
-        0.0, pass.keep * row.normal_impulse + pass.mass * (pass.target - row.normal.dot(v)));
+    const double left = row.targets.*kTarget - row.normal.dot(v);
+    const double normal = std::max(0.0, row.normal_impulse + row.normal_mass * left);
     const double change = normal - row.normal_impulse;
     if (change == 0 && normal == 0) return {};  // apart, and friction is 0 too
     row.normal_impulse = normal;
@@ -74,7 +73,7 @@ RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& ro
 
 /// The larger of the velocities along and across the normal that a change makes up for [m/s].
 double velocity_left(const ContactRow& row, const RowChange& change) {
-    const double along = change.normal != 0 ? std::abs(change.normal) / row.relax.mass : 0;
+    const double along = change.normal != 0 ? std::abs(change.normal) / row.normal_mass : 0;
     return row.slide_mass > 0 ? std::max(along, change.tangent.norm() / row.slide_mass) : along;
 }
 
@@ -84,13 +83,13 @@ RollingRow& rolling_row_of(StepData& step, const ContactRow& row) {
 }
 
 /// @return the largest velocity_left() if it is measured, else 0
-template <NormalPass ContactRow::*kPass, bool kTurning, bool kFriction, bool kRolling>
+template <double ContactTargets::*kTarget, bool kTurning, bool kFriction, bool kRolling>
 double sweep_rows(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                   Sweep sweep) {
     double residual = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         ContactRow& row = rows[sweep.backward ? rows.size() - 1 - i : i];
-        const RowChange change = solve_row<kPass, kTurning, kFriction>(simulation, step, row);
+        const RowChange change = solve_row<kTarget, kTurning, kFriction>(simulation, step, row);
         if constexpr (kRolling) solve_rolling_row(simulation, step, row, rolling_row_of(step, row));
         if (sweep.measured) residual = std::max(residual, velocity_left(row, change));
     }
@@ -103,14 +102,14 @@ double run_pass(const Simulation& simulation, StepData& step, std::span<ContactR
     return iterate(pass, effort, [&](Sweep sweep) {
         switch (pass) {
             case Pass::kSolve:
-                return sweep_rows<&ContactRow::solve, kTurning, true, kRolling>(simulation, step,
-                                                                                rows, sweep);
-            case Pass::kRelax:
-                return sweep_rows<&ContactRow::relax, kTurning, true, kRolling>(simulation, step,
-                                                                                rows, sweep);
+                return sweep_rows<&ContactTargets::first, kTurning, true, kRolling>(
+                    simulation, step, rows, sweep);
+            case Pass::kRestitution:
+                return sweep_rows<&ContactTargets::second, kTurning, true, kRolling>(
+                    simulation, step, rows, sweep);
             default:
-                return sweep_rows<&ContactRow::relax, kTurning, false, false>(simulation, step,
-                                                                              rows, sweep);
+                return sweep_rows<&ContactTargets::second, kTurning, false, false>(simulation, step,
+                                                                                   rows, sweep);
         }
     });
 }
@@ -187,39 +186,13 @@ std::span<const BodyId> bodies_of(const Simulation& simulation, StepData& step,
     return {first, std::unique(first, end)};
 }
 
-/// Of what whirls() nothing is taken back.
-/// @return whether anything does
-bool leave_whirling(const Simulation& simulation, const StepData& step,
-                    std::span<ContactRow> rows) {
-    bool any = false;
-    for (ContactRow& row : rows) {
-        if (!whirls(simulation, step, row.a) && !whirls(simulation, step, row.b)) continue;
-        any = true;
-        row.relax.mass = row.slide_mass = 0;
-        row.tangent_mass.setZero();
-    }
-    return any;
-}
-
-/// A rim has turned since the load of soft contacts aimed at its rise: what it lacks of that by now
-/// is not missing.
-void lower_rises(const Simulation& simulation, const StepData& step, std::span<ContactRow> rows) {
-    for (ContactRow& row : rows) {
-        if (!(row.relax.target > 0)) continue;
-        const Vec4 v =
-            relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-        row.relax.target = std::clamp(row.normal.dot(v), 0.0, row.relax.target);
-    }
-}
-
-/// What the rows' impulses times their velocities are, less those times the pass's targets.
-template <NormalPass ContactRow::*kPass>
+/// What the rows' impulses times their velocities are, less those times the load's targets.
 double work_of(const Simulation& simulation, StepData& step, std::span<const ContactRow> rows) {
     double sum = 0;
     for (const ContactRow& row : rows) {
         const Vec4 v =
             relative_velocity(step, row.a, row.r_a, row.b, row.r_b, simulation.needs.turning);
-        sum += row.normal_impulse * (row.normal.dot(v) - (row.*kPass).target);
+        sum += row.normal_impulse * (row.normal.dot(v) - row.targets.first);
         sum += row.tangent_impulse.dot(v + row.slip_by_turning);
         if (simulation.needs.rolling)
             sum += dot(angular_impulse_of(row, rolling_row_of(step, row)),
@@ -245,32 +218,14 @@ void leave_part(const Simulation& simulation, StepData& step, std::span<ContactR
 /// The impulses that the load starts from; see kRecalledWeight.
 void apply_recalled(const Simulation& simulation, StepData& step, std::size_t island) {
     const std::span<ContactRow> rows = rows_of(step, island);
-    if (simulation.settings.solver != Solver::kImpulse)
-        return apply_part(simulation, step, rows, 1);
-    const double before = work_of<&ContactRow::solve>(simulation, step, rows);
+    const double before = work_of(simulation, step, rows);
     apply_part(simulation, step, rows, 1);
-    const double after = work_of<&ContactRow::solve>(simulation, step, rows);
+    const double after = work_of(simulation, step, rows);
     const LoadWork load = {before, after - before};
     const double weight = energy_of_fall(simulation, step, island);
     if (0.5 * load.energy > LoadWork::least_of_stop(weight) &&
         load.is_too_much(weight, is_stopped(simulation, step, island)))
         leave_part(simulation, step, rows, load.best_part());
-}
-
-/// After sweeps of soft contacts: leaves the best part of impulses that are a gain by springs.
-/// @return whether they were
-bool end_gain(const Simulation& simulation, StepData& step, std::size_t island) {
-    const Overlap overlap = overlap_of(simulation, step, island);
-    if (!overlap.any) return false;
-    const std::span<ContactRow> rows = rows_of(step, island);
-    const double with = work_of<&ContactRow::relax>(simulation, step, rows);
-    apply_part(simulation, step, rows, -1);
-    const double without = work_of<&ContactRow::relax>(simulation, step, rows);
-    apply_part(simulation, step, rows, 1);
-    const LoadWork load = {without, with - without};
-    if (!load.is_gain(overlap.weight)) return false;
-    leave_part(simulation, step, rows, load.best_part());
-    return true;
 }
 
 void keep_hits(StepData& step, std::size_t island) {
@@ -405,7 +360,7 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
     for (const BodyId id : bodies) step.blow_motion[id].before = motion_of(step, id);
     compress(simulation, step, island, blow, effort);
     for (const BodyId id : bodies) step.blow_motion[id].compressed = motion_of(step, id);
-    run_pass(simulation, step, rows, Pass::kRelax, effort);
+    run_pass(simulation, step, rows, Pass::kRestitution, effort);
     const double part = part_of_restitution(restitution_of(simulation, step, bodies), blow);
     leave_part_of_restitution(simulation, step, bodies, part);
     keep_hits(step, island);
@@ -421,26 +376,15 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     apply_recalled(simulation, step, island);
     step.residual[island] =
         run_pass(simulation, step, rows, Pass::kSolve, effort_of_load(simulation, step, island));
-    if (simulation.settings.solver == Solver::kImpulse) keep_impulses(simulation, step, island);
+    keep_impulses(simulation, step, island);
     if (step.pushed[island] != Push::kNone) push(simulation, step, island);
 }
 
-void relax_island(const Simulation& simulation, StepData& step, std::size_t island) {
+void drop_correction(const Simulation& simulation, StepData& step, std::size_t island) {
+    if (step.pushed[island] == Push::kNone) return;
     if (step.islands.is_coloured(island))
-        return relax_coloured_island(simulation, step, island, OneThread{});
-    if (simulation.settings.solver == Solver::kSoft) {
-        const std::span<ContactRow> rows = rows_of(step, island);
-        const bool whirls = leave_whirling(simulation, step, rows);
-        if (simulation.needs.rims) lower_rises(simulation, step, rows);
-        const auto relax = [&] {
-            return run_pass(simulation, step, rows, Pass::kRelax,
-                            effort_of_load(simulation, step, island));
-        };
-        step.residual[island] = relax();
-        if (!whirls && end_gain(simulation, step, island)) step.residual[island] = relax();
-        keep_impulses(simulation, step, island);
-    }
-    if (step.pushed[island] != Push::kNone) take_push_back(simulation, step, island);
+        return drop_coloured_correction(simulation, step, island, OneThread{});
+    take_push_back(simulation, step, island);
 }
 
 }  // namespace tesserae

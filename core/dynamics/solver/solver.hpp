@@ -17,10 +17,9 @@ void solve_blow(const Simulation& simulation, StepData& step, std::size_t island
 /// directions instead of separate ones.
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
 
-/// Once the island's bodies have moved by the velocities that solve_island() gave them: with
-/// Solver::kSoft takes back the part of the velocities that removed overlap (M. Macklin et al.,
-/// "Small steps in physics simulation", 2019; E. Catto, "Solver2D", 2024). Leaves the island's
-/// impulses in step.impulses.
-void relax_island(const Simulation& simulation, StepData& step, std::size_t island);
+/// Takes back the part of the velocities that only took overlap away, once the island's bodies have
+/// moved by it (as split impulses: Guendelman et al., "Nonconvex rigid bodies with stacking",
+/// 2003).
+void drop_correction(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

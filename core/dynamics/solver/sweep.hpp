@@ -8,8 +8,9 @@
 
 namespace tesserae {
 
-/// kPush is kRelax by normal impulses alone: overlap is taken away along the normals.
-enum class Pass { kSolve, kRelax, kPush };
+/// A blow's compression or a load, a blow's restitution, and what takes overlap away after a load,
+/// by normal impulses alone.
+enum class Pass { kSolve, kRestitution, kPush };
 
 /// How long a pass goes on: until a sweep's residual is at most `enough`, at most so many.
 struct Effort {
@@ -34,8 +35,7 @@ struct Effort {
 };
 /// Whether as many sweeps as by default are asked for: then there may be more where they help.
 inline bool may_take_more(const PhysicsSettings& settings) {
-    return settings.tolerance > 0 && settings.solver == Solver::kImpulse &&
-           settings.iterations >= PhysicsSettings{}.iterations;
+    return settings.tolerance > 0 && settings.iterations >= PhysicsSettings{}.iterations;
 }
 /// How many an island of so many contacts may take, as few cost little.
 inline int sweeps_of_few(std::size_t work, std::size_t contacts, std::size_t most) {
@@ -107,14 +107,12 @@ struct LoadWork {
     double work = 0;    ///< times the velocities before them, less their targets [J]
     double energy = 0;  ///< twice the kinetic energy of what they have changed [J]
 
-    /// Of energy, over what they may give [J]. Sweeps only lessen it; but springs that push apart
-    /// what a blow has pressed into each other do much that sweeps do not take back in time, and a
-    /// row of nine boxes would be thrown back with four times the energy that it had.
-    bool is_gain(double allowed) const { return work + 0.5 * energy > allowed; }
+    /// Of energy. Sweeps only lessen it.
+    bool is_gain() const { return work + 0.5 * energy > 0; }
     /// Whether a load does not start from so much: see kRecalledWeight.
     /// @param energy_of_fall, stopped   energy_of_fall(), is_stopped()
     bool is_too_much(double energy_of_fall, bool stopped) const {
-        return 0.5 * energy > kRecalledWeight * energy_of_fall || (stopped && is_gain(0));
+        return 0.5 * energy > kRecalledWeight * energy_of_fall || (stopped && is_gain());
     }
     /// What the energy is at least where is_stopped().
     static double least_of_stop(double energy_of_fall) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/dynamics/constants.hpp"
 
@@ -46,19 +45,12 @@ double slop_of(const Simulation& simulation, BodyId a, BodyId b) {
     return std::min(simulation.type_of(a).slop, simulation.type_of(b).slop);
 }
 
-/// That which contacts move [kg].
-double mass_of(const Simulation& simulation, BodyId id) {
-    const TypeProperties& type = simulation.type_of(id);
-    return type.inverse_mass > 0 ? type.mass : 0;
-}
-
 /// Bodies that bounce and do not hit each other by themselves: stopping them at each other's
 /// surface if another blow drives them there would lose that energy. They may overlap and bounce in
 /// the next sub-step, so that blows go through a row of bodies one after the other.
 ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
-    ContactTargets targets;
-    targets.solve = targets.relax = -(s + approach.through) / h;
-    return targets;
+    const double aim = -(s + approach.through) / h;
+    return {aim, aim};
 }
 
 /// @param v0     at which the points meet
@@ -66,14 +58,12 @@ ContactTargets targets_of_driven(const Approach& approach, double s, double h) {
 ContactTargets targets_of_blow(const Approach& approach, double s, double h, double v0,
                                double rise) {
     const double g = approach.g;
-    ContactTargets targets;
-    targets.solve = targets.relax = s > 0 ? -s / h : 0;
-    if (approach.e == 0) return targets;
+    const double touching = s > 0 ? -s / h : 0;
+    if (approach.e == 0) return {touching, touching};
     if (s > h * (v0 + rise + h * g) || !(v0 - rise > approach.slowest))
-        return s > -approach.through ? targets_of_driven(approach, s, h) : targets;
-    targets.solve = 0;
-    targets.relax = std::max(0.0, rebound_velocity(approach.e, v0 - rise, g, s, h) + h * g);
-    return targets;
+        return s > -approach.through ? targets_of_driven(approach, s, h)
+                                     : ContactTargets{touching, touching};
+    return {0, std::max(0.0, rebound_velocity(approach.e, v0 - rise, g, s, h) + h * g)};
 }
 
 /// The aim for the points that brings the surfaces to where it says of them. A rim that rolls on
@@ -105,7 +95,6 @@ Parting parting_of(const StepData& step, std::size_t island) {
 PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,
                          Cause cause, const Parting& parting)
     : cause_(cause),
-      soft_(simulation.settings.solver == Solver::kSoft),
       bounces_(simulation.needs.restitution),
       needs_approach_(cause == Cause::kBlow || bounces_ || simulation.needs.rims),
       h_(step.h),
@@ -123,9 +112,7 @@ ContactTargets PairTargets::at(double separation, double velocity, double rise) 
     if (rise == 0) return targets;
     const double met = -velocity - (cause_ == Cause::kLoad ? h_ * approach_.g : 0);
     const double most = std::max(0.0, met);
-    targets.solve = raised(targets.solve, rise, most);
-    targets.relax = raised(targets.relax, rise, most);
-    return targets;
+    return {raised(targets.first, rise, most), raised(targets.second, rise, most)};
 }
 
 /// But for the rise of the aim.
@@ -142,23 +129,13 @@ ContactTargets PairTargets::of_level(double s, double velocity, double rise) con
 
 /// What keeps bodies apart or takes them apart.
 ContactTargets PairTargets::of_overlap(double s) const {
-    ContactTargets targets;
     if (s > -slop_) {
-        targets.solve = targets.relax = s > (soft_ ? 0 : kRestingGap * slop_) ? -s / h_ : 0;
-        return targets;
+        const double aim = s > kRestingGap * slop_ ? -s / h_ : 0;
+        return {aim, aim};
     }
     const double depth = -(s + slop_);
-    if (!soft_) {
-        targets.solve = std::min(bias_, kBiasPart / h_ * depth);
-        targets.relax = std::min(fastest_, 2 * kBiasPart / h_ * depth);
-        return targets;
-    }
-    // A spring of angular frequency w, integrated implicitly.
-    constexpr double kAngle = 2 * std::numbers::pi * kSpringCycles;  // w h
-    constexpr double kSum = 2 * kSpringDamping + kAngle, kStiff = kAngle * kSum;
-    targets.solve = std::min(fastest_, 2 * kAngle / kSum / h_ * depth);
-    targets.keep = kStiff / (1 + kStiff);
-    return targets;
+    return {std::min(bias_, kBiasPart / h_ * depth),
+            std::min(fastest_, 2 * kBiasPart / h_ * depth)};
 }
 
 Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const Contact& contact,
@@ -178,7 +155,7 @@ Vec4 slip_by_turning(const Simulation& simulation, const StepData& step, const C
 }
 
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island) {
-    if (simulation.settings.solver != Solver::kImpulse || !step.islands.held[island]) return false;
+    if (!step.islands.held[island]) return false;
     for (const std::uint32_t n : step.islands.runs_in(island)) {
         const ContactList::Run run = step.contacts.nth_run(n);
         const double deep = -slop_of(simulation, run.a, run.b);
@@ -186,24 +163,6 @@ bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t i
             if (step.contacts.separation(i) < deep) return true;
     }
     return false;
-}
-
-Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island) {
-    Overlap overlap;
-    for (const std::uint32_t n : step.islands.runs_in(island)) {
-        const ContactList::Run run = step.contacts.nth_run(n);
-        double deepest = 0;
-        for (std::size_t i = run.begin; i < run.end; ++i)
-            deepest = std::max(deepest, -step.contacts.separation(i));
-        const double depth = deepest - slop_of(simulation, run.a, run.b);
-        if (depth > 0) {
-            overlap.any = true;
-            const Vec4 normal = step.contacts.normal(run.begin);
-            overlap.weight += depth * std::abs(normal.dot(simulation.settings.gravity)) *
-                              (mass_of(simulation, run.a) + mass_of(simulation, run.b));
-        }
-    }
-    return overlap;
 }
 
 double energy_of_fall(const Simulation& simulation, const StepData& step, std::size_t island) {
@@ -253,7 +212,7 @@ Blow blow_of(const Simulation& simulation, const StepData& step, std::size_t pla
     Blow blow;
     blow.fastest = v0;
     blow.returned =
-        std::max(0.0, targets_of_blow(approach, contact.separation, step.h, v0, rise).relax) / v0;
+        std::max(0.0, targets_of_blow(approach, contact.separation, step.h, v0, rise).second) / v0;
     return blow;
 }
 

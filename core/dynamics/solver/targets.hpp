@@ -11,15 +11,6 @@ enum class Cause {
     kLoad,  ///< they rest on each other; after it
 };
 
-/// What a row aims at, along the normal; see NormalPass. Of a blow, `solve` is the compression and
-/// `relax` the restitution; of a load of Solver::kImpulse `relax` is the push, which takes overlap
-/// away.
-struct ContactTargets {
-    double keep = 1;   ///< of the solve pass
-    double solve = 0;  ///< [m/s]
-    double relax = 0;  ///< [m/s]
-};
-
 /// What decides whether a contact is a blow, and what follows: the same for all of two bodies that
 /// have one normal.
 struct Approach {
@@ -61,11 +52,11 @@ class PairTargets {
     ContactTargets of_overlap(double separation) const;
 
     Cause cause_;
-    bool soft_, bounces_, needs_approach_;  ///< bounces_: of any pair
-    double h_;                              ///< [s]
-    double slop_;                           ///< overlap that is left alone [m]
-    double fastest_;                        ///< at which bodies are moved apart, at most [m/s]
-    double bias_;                           ///< the same of a load of Solver::kImpulse
+    bool bounces_, needs_approach_;  ///< bounces_: of any pair
+    double h_;                       ///< [s]
+    double slop_;                    ///< overlap that is left alone [m]
+    double fastest_;                 ///< at which bodies are moved apart, at most [m/s]
+    double bias_;                    ///< the same of a load
     Approach approach_;
 };
 
@@ -117,17 +108,10 @@ inline Vec4 velocity_before_gravity(const Simulation& simulation, const StepData
 }
 
 /// Whether any contact of the island overlaps by more than is left alone, and some body is held: a
-/// push of Solver::kImpulse then follows the load, with which bodies move, and which is given back
+/// push then follows the load, with which bodies move, and which is given back
 /// afterwards. So it moves bodies without impulses, which changes the angular momentum of those
 /// that move against each other: where nothing is held that is kept.
 bool is_pushed(const Simulation& simulation, const StepData& step, std::size_t island);
-
-/// Of an island's contacts, as far as they overlap by more than is left alone.
-struct Overlap {
-    bool any = false;
-    double weight = 0;  ///< the work that lifts the bodies of each out of it [J]
-};
-Overlap overlap_of(const Simulation& simulation, const StepData& step, std::size_t island);
 
 /// What gravity gives an island's bodies in a sub-step from rest [J].
 double energy_of_fall(const Simulation& simulation, const StepData& step, std::size_t island);

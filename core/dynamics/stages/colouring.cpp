@@ -25,11 +25,6 @@ void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents, Lanes
     resize_anew(impulses.tangent, friction ? rows : 0);
 }
 
-void size_relax(const Simulation& simulation, std::size_t rows, NormalRelax& relax) {
-    resize_anew(relax.target, rows);
-    if (simulation.settings.solver == Solver::kSoft) resize_anew(relax.keep, rows);
-}
-
 void size_directions(ColouredIslands& coloured) {
     resize_anew(coloured.direction, coloured.bodies.size());
     resize_anew(coloured.recalled, coloured.bodies.size());
@@ -99,26 +94,24 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
     coloured.first_body.push_back(static_cast<std::uint32_t>(coloured.bodies.size()));
 }
 
-void Colouring::end(const Simulation& simulation, StepData& step) {
+void Colouring::end(StepData& step) {
     ColouredIslands& coloured = step.coloured;
     resize_anew(coloured.changes, coloured.bodies.size());
     resize_anew(coloured.last_changes, coloured.bodies.size());
     resize_anew(coloured.body_sums,
                 coloured.bodies.size() / kSumPiece + coloured.first_body.size());
-    if (simulation.settings.solver == Solver::kImpulse) size_directions(coloured);
+    size_directions(coloured);
     if (coloured.turns_unevenly) {
         resize_anew(coloured.inverse_inertias, coloured.bodies.size());
         resize_anew(coloured.pair_inertias, coloured.general.size());
     }
-    if (simulation.settings.solver == Solver::kSoft)
-        resize_anew(coloured.angular_velocity, coloured.bodies.size());
     size_impulses(coloured.round.size(), coloured.friction, coloured.round_impulses);
     size_impulses(coloured.general_rows, coloured.friction, coloured.impulses);
     resize_anew(coloured.round_rows, coloured.round.size());
-    size_relax(simulation, coloured.round.size(), coloured.round_relax);
+    resize_anew(coloured.round_second, coloured.round.size());
     resize_anew(coloured.frames, coloured.general.size());
     resize_anew(coloured.rows, coloured.general_rows);
-    size_relax(simulation, coloured.general_rows, coloured.relax);
+    resize_anew(coloured.second, coloured.general_rows);
     resize_anew(coloured.point_response, coloured.point_responses);
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());

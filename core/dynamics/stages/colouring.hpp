@@ -14,7 +14,7 @@ class Colouring {
     /// Adds the island, the next one that is coloured.
     void add(const Simulation& simulation, StepData& step, std::size_t island);
     /// Sizes the rows.
-    void end(const Simulation& simulation, StepData& step);
+    void end(StepData& step);
 
   private:
     /// The contacts of two bodies, which follow each other in StepData::contacts.

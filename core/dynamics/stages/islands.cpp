@@ -36,7 +36,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
             rows += islands.contacts[island];
         }
     }
-    colouring_.end(simulation, step);
+    colouring_.end(step);
     resize_anew(step.rows, rows);
     if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
     resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});

@@ -9,7 +9,7 @@ const char* name_of(Stage stage) {
     constexpr const char* kNames[] = {
         "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
         "solve_blows",        "integrate_velocities", "solve_islands", "advance_second_half",
-        "relax_islands",      "stop_at_impacts",      "finish_step"};
+        "drop_corrections",   "stop_at_impacts",      "finish_step"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -39,9 +39,9 @@ void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
         solve_island(simulation, step, island);
 }
 
-void Schedule::relax_islands(const Simulation& simulation, StepData& step) {
+void Schedule::drop_corrections(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < step.islands.size(); ++island)
-        relax_island(simulation, step, island);
+        drop_correction(simulation, step, island);
 }
 
 }  // namespace tesserae

@@ -16,7 +16,7 @@ enum class Stage {
     kIntegrateVelocities,
     kSolveIslands,
     kAdvanceSecondHalf,
-    kRelaxIslands,
+    kDropCorrections,
     kStopAtImpacts,
     kFinishStep,
 };
@@ -52,10 +52,10 @@ class Schedule {
     /// The same from bounds that have not changed, after bodies woke.
     virtual void choose_pairs(const Simulation& simulation, StepData& step);
 
-    /// solve_blow() of every island, solve_island() and relax_island().
+    /// solve_blow() of every island, solve_island() and drop_correction().
     virtual void solve_blows(const Simulation& simulation, StepData& step);
     virtual void solve_islands(const Simulation& simulation, StepData& step);
-    virtual void relax_islands(const Simulation& simulation, StepData& step);
+    virtual void drop_corrections(const Simulation& simulation, StepData& step);
 };
 
 }  // namespace tesserae

@@ -76,13 +76,10 @@ constexpr std::uint32_t responses_of(std::uint32_t rows) {
     return padded_points(rows) * (padded_points(rows) + 1) / 2;
 }
 
-/// The normal part of a row; see NormalPass. Targets are less the normal velocity of the start.
+/// The normal part of a row: its mass and the target of the first pass, see ContactTargets. All
+/// targets are less the normal velocity of the start.
 struct NormalRow {
     Eight mass, target;
-};
-/// What most sweeps do not need of rows, see NormalPass; `keep` is there where contacts are soft.
-struct NormalRelax {
-    std::vector<Eight> target, keep;
 };
 
 /// Impulses on b of rows with so many tangents, but for rolling: along the normal, and across it
@@ -200,11 +197,10 @@ struct ColouredIslands {
     // Of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions
-    std::vector<Bivector> angular_velocity;     ///< of `bodies`, as solved; Solver::kSoft
     RowImpulses<4> round_impulses;              ///< of `round`, in world axes
     RowImpulses<3> impulses;                    ///< of `rows`, in the frames
     std::vector<RoundRow> round_rows;           ///< of `round`
-    NormalRelax round_relax;                    ///< likewise
+    std::vector<Eight> round_second;            ///< likewise: the second pass's targets
     std::vector<RoundFriction> round_friction;  ///< of `round`
     std::vector<RoundRolling> round_rolling;    ///< likewise
     std::vector<PairFrame> frames;              ///< of `general`
@@ -214,7 +210,7 @@ struct ColouredIslands {
     /// moment about its length does would be more than what any other does.
     std::vector<AcrossResponse<Eight>> slender_response;
     std::vector<GeneralRow> rows;  ///< of `general`, see Batch::row
-    NormalRelax relax;             ///< likewise
+    std::vector<Eight> second;     ///< likewise: the second pass's targets
     /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
     /// of the velocity along it at another; 0 for points that a batch does not have.
     std::vector<RoughEight> point_response;

@@ -12,12 +12,6 @@ enum class RotationIntegrator {
     kMidpoint,  ///< with that of the middle, implicitly: keeps the energy too
 };
 
-/// How overlap is removed. Both have the same rows, friction, restitution and warm starting.
-enum class Solver {
-    kImpulse,  ///< a velocity that closes a part of it, which stays as momentum
-    kSoft,     ///< a damped spring, whose velocity is taken back after the bodies have moved by it
-};
-
 /// The [physics] table.
 struct PhysicsSettings {
     Vec4 gravity = {0, -10, 0, 0};  ///< [m/s^2]
@@ -28,7 +22,6 @@ struct PhysicsSettings {
     /// what may take more.
     int iterations = 10;
     double tolerance = 1e-6;  ///< residual [m/s] below which its sweeps end; 0: all of them
-    Solver solver = Solver::kImpulse;
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
     bool sleeping = false;  ///< islands at rest are left out until something touches them
     std::uint64_t seed = 1;

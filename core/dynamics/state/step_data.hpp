@@ -71,25 +71,23 @@ struct ContactSums {
     double penetration = 0, sum = 0;  ///< deepest overlap and all overlaps [m]
 };
 
-/// How one pass of the solver moves a contact's normal impulse p at the normal velocity v:
-/// p <- max(0, keep p + mass (target - v)).
-struct NormalPass {
-    double mass = 0;    ///< [kg]; the inverse of the response if rigid, less if soft
-    double keep = 1;    ///< 1 if rigid; a soft contact yields, and p with it
-    double target = 0;  ///< [m/s]
+/// The normal velocities [m/s] at which a contact's passes aim. The first pass is a blow's
+/// compression or a load; the second one follows it: the restitution or the push.
+struct ContactTargets {
+    double first = 0, second = 0;
 };
 
 /// A contact as the solver sees it. Impulses act on b, their opposites on a.
 struct ContactRow {
-    Vec4 normal;                ///< unit, from a to b
-    Vec4 r_a, r_b;              ///< from the centres to the contact point [m]
-    Vec4 normal_response;       ///< change of the relative velocity by a unit impulse on n [1/kg]
-    Mat4 tangent_mass;          ///< inverse of the response in the three tangent directions [kg]
-    double slide_mass = 0;      ///< below the inverse of the largest of these responses [kg]
-    Vec4 tangent_impulse;       ///< [N s], orthogonal to the normal
-    Vec4 slip_by_turning;       ///< [m/s], where there is friction
-    NormalPass solve;           ///< overlap is removed
-    NormalPass relax;           ///< the velocity that removed it is taken back
+    Vec4 normal;             ///< unit, from a to b
+    Vec4 r_a, r_b;           ///< from the centres to the contact point [m]
+    Vec4 normal_response;    ///< change of the relative velocity by a unit impulse on n [1/kg]
+    Mat4 tangent_mass;       ///< inverse of the response in the three tangent directions [kg]
+    double slide_mass = 0;   ///< below the inverse of the largest of these responses [kg]
+    Vec4 tangent_impulse;    ///< [N s], orthogonal to the normal
+    Vec4 slip_by_turning;    ///< [m/s], where there is friction
+    double normal_mass = 0;  ///< inverse of the response along the normal [kg]
+    ContactTargets targets;
     double normal_impulse = 0;  ///< [N s], >= 0
     double friction = 0;        ///< coefficient
     BodyId a = 0, b = 0;

@@ -68,12 +68,11 @@ inline BodyType capsule_type(double radius, double height, double mass = 1) {
     return type;
 }
 
-/// The soft solver as README recommends it.
-inline PhysicsSettings soft_settings() {
+/// Several sub-steps a step; of few sweeps each where nothing depends on how well they converge.
+inline PhysicsSettings substepped_settings(int iterations = 2) {
     PhysicsSettings settings;
-    settings.solver = Solver::kSoft;
     settings.substeps = 4;
-    settings.iterations = 2;
+    settings.iterations = iterations;
     return settings;
 }
 

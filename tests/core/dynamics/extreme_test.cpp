@@ -48,18 +48,18 @@ constexpr double kSlopOfBox = 0.0025;
 
 TEST(Extreme, ALightBoxStandsOnOneAMillionTimesHeavier) {
     EXPECT_LT(moved(tower({1e6, 1}), impulse(), 2), kSlopOfBox);
-    EXPECT_LT(moved(tower({1e6, 1}), soft_settings(), 2), kSlopOfBox);
+    EXPECT_LT(moved(tower({1e6, 1}), substepped_settings(), 2), kSlopOfBox);
 }
 
-TEST(Extreme, AHeavyBoxStandsOnOneAHundredTimesLighterWithTheSoftSolver) {
-    EXPECT_LT(moved(tower({1, 100}), soft_settings(), 4), 2 * kSlopOfBox);
+TEST(Extreme, AHeavyBoxStandsOnOneAHundredTimesLighter) {
+    EXPECT_LT(moved(tower({1, 100}), substepped_settings(), 4), 2 * kSlopOfBox);
 }
 
 TEST(Extreme, FortyBoxesStand) {
     const Bodies bodies = tower(std::vector<double>(40, 1000.0));
     // It sways: the top by less than a quarter of a box.
     EXPECT_LT(moved(bodies, impulse(), 3), 0.25);
-    EXPECT_LT(moved(bodies, soft_settings(), 3), 0.25);
+    EXPECT_LT(moved(bodies, substepped_settings(), 3), 0.25);
 }
 
 TEST(Extreme, SizesFromAMillimetreToAKilometreRestInOneScene) {
@@ -72,19 +72,19 @@ TEST(Extreme, SizesFromAMillimetreToAKilometreRestInOneScene) {
         x += 1.5 * radius;
     }
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.0005);
-    EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.0005);
+    EXPECT_LT(moved(bodies, substepped_settings(), 2), 0.005 * 0.0005);
 }
 
 TEST(Extreme, AThousandTimesTheGravityPressesABoxNoDeeperThanItsSlop) {
-    PhysicsSettings settings = soft_settings();
+    PhysicsSettings settings = substepped_settings();
     settings.gravity = {0, -1e4, 0, 0};
     EXPECT_LT(moved(tower({1000}), settings, 2), kSlopOfBox);
 }
 
 TEST(Extreme, ATowerFarFromTheOriginStandsAsWellAsOneNearIt) {
     const std::vector<double> masses(5, 1000.0);
-    const double near = moved(tower(masses), soft_settings(), 2);
-    const double far = moved(tower(masses, {1e5, -1e5, 1e5, 1e5}), soft_settings(), 2);
+    const double near = moved(tower(masses), substepped_settings(), 2);
+    const double far = moved(tower(masses, {1e5, -1e5, 1e5, 1e5}), substepped_settings(), 2);
     // Coordinates are rounded to 1.5e-11 m there, and noise like that is what a tower settles from.
     EXPECT_LT(near, kSlopOfBox);
     EXPECT_LT(far, kSlopOfBox);
@@ -199,7 +199,7 @@ TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
 }
 
 TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
-    for (const PhysicsSettings& given : {impulse(), soft_settings()}) {
+    for (const PhysicsSettings& given : {impulse(), substepped_settings()}) {
         PhysicsSettings settings = given;
         settings.gravity.setZero();
         Bodies bodies;
@@ -231,7 +231,7 @@ TEST(Extreme, ACapsuleTenThousandTimesAsLongAsWideLiesStill) {
     add(bodies, type, {0, 0.01, 0, 0}, Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
     // 0.005 of its radius is left alone.
     EXPECT_LT(moved(bodies, impulse(), 2), 0.005 * 0.01);
-    EXPECT_LT(moved(bodies, soft_settings(), 2), 0.005 * 0.01);
+    EXPECT_LT(moved(bodies, substepped_settings(), 2), 0.005 * 0.01);
 }
 
 /// How far a body dropped from 0.3 m gets below a floor at 0, and how much energy it wins.
@@ -287,9 +287,9 @@ void expect_slender_bodies_stay(double thin, double friction, bool on_box,
 /// Every two of width, friction, floor and solver together, of which the slow test has all four.
 TEST(Extreme, SlenderBodiesLandAndStay) {
     expect_slender_bodies_stay(1e-4, 0, false, impulse());
-    expect_slender_bodies_stay(1e-4, 0.5, true, soft_settings());
-    expect_slender_bodies_stay(1e-9, 0, true, soft_settings());
-    expect_slender_bodies_stay(1e-9, 0.5, false, soft_settings());
+    expect_slender_bodies_stay(1e-4, 0.5, true, substepped_settings());
+    expect_slender_bodies_stay(1e-9, 0, true, substepped_settings());
+    expect_slender_bodies_stay(1e-9, 0.5, false, substepped_settings());
     expect_slender_bodies_stay(1e-9, 0.5, true, impulse());
 }
 
@@ -416,7 +416,7 @@ TEST(ExtremeSlow, SlenderBodiesOfAnyWidthLandAndStay) {
     for (const double thin : {1e-4, 1e-5, 1e-6, 1e-9})
         for (const double friction : {0.0, 0.5})
             for (const bool on_box : {false, true})
-                for (const PhysicsSettings& settings : {impulse(), soft_settings()})
+                for (const PhysicsSettings& settings : {impulse(), substepped_settings()})
                     expect_slender_bodies_stay(thin, friction, on_box, settings);
 }
 

@@ -163,23 +163,19 @@ struct Carousel {
 /// They went straight on in every step, and came out by exp(w^2 h t / 2): by 9 % in a turn at 3
 /// rad/s, until they slid off.
 void expect_kept_where_it_is(double angle) {
-    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
-        for (const bool driven : {true, false})
-            for (const double speed : {1.0, 3.0}) {
-                Carousel carousel(speed, driven);
-                carousel.ride(box_type({0.3, 0.3, 0.3, 0.3}, 3), {0.8, 0.15, 0, 0});
-                for (int i = 0; i < 3; ++i)
-                    carousel.ride(box_type({0.5, 0.1, 0.4, 0.3}, 1), {-0.5, 0.05 + 0.1 * i, 0, 0});
-                PhysicsSettings settings;
-                settings.solver = solver;
-                const World world = carousel.turned(settings, angle);
-                for (BodyId id = 1; id < carousel.bodies.size(); ++id) {
-                    const Vec4 &was = carousel.bodies.position[id],
-                               &is = world.bodies().position[id];
-                    EXPECT_NEAR(std::hypot(is[0], is[3]), std::hypot(was[0], was[3]), 2e-3)
-                        << id << " " << speed << " " << driven;
-                }
+    for (const bool driven : {true, false})
+        for (const double speed : {1.0, 3.0}) {
+            Carousel carousel(speed, driven);
+            carousel.ride(box_type({0.3, 0.3, 0.3, 0.3}, 3), {0.8, 0.15, 0, 0});
+            for (int i = 0; i < 3; ++i)
+                carousel.ride(box_type({0.5, 0.1, 0.4, 0.3}, 1), {-0.5, 0.05 + 0.1 * i, 0, 0});
+            const World world = carousel.turned(PhysicsSettings{}, angle);
+            for (BodyId id = 1; id < carousel.bodies.size(); ++id) {
+                const Vec4 &was = carousel.bodies.position[id], &is = world.bodies().position[id];
+                EXPECT_NEAR(std::hypot(is[0], is[3]), std::hypot(was[0], was[3]), 2e-3)
+                    << id << " " << speed << " " << driven;
             }
+        }
 }
 
 TEST(Turntable, KeepsWhatStandsOnItWhereItIs) { expect_kept_where_it_is(7); }

@@ -169,7 +169,7 @@ TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
 
 /// Flat duoprisms, whose cells have up to 24 corners, of which eight points are kept.
 TEST(Polychora, ThatAreFlatLieStill) {
-    for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
+    for (const PhysicsSettings& settings : {PhysicsSettings{}, substepped_settings()})
         for (const auto& [p, q, ratio] : {std::tuple{6, 8, 4.0},
                                           {6, 8, 10.0},
                                           {6, 6, 3.5},

@@ -17,7 +17,9 @@ using namespace testing;
 
 constexpr double kGravity = 10;  // [m/s^2]
 
-std::array<PhysicsSettings, 2> both_solvers() { return {PhysicsSettings{}, soft_settings()}; }
+std::array<PhysicsSettings, 2> both_settings() {
+    return {PhysicsSettings{}, substepped_settings()};
+}
 
 /// A unit vector of the floor's three directions.
 Vec4 along_floor(std::mt19937_64& random) {
@@ -70,7 +72,7 @@ void expect_slowed(const Ball& ball, const Bodies& now, BodyId id, double time, 
 TEST(RollingFriction, SlowsABallByThreeQuartersOfItsArmOverTheRadius) {
     std::mt19937_64 random(1);
     for (int round = 0; round < 200; ++round) {
-        const PhysicsSettings settings = both_solvers()[round % 2];
+        const PhysicsSettings settings = both_settings()[round % 2];
         const bool coloured = round / 2 % 2;
         const double dt = std::array{1.0 / 60, kStep, 1.0 / 1000}[round % 3];
         const Ball ball = random_ball(random);
@@ -96,7 +98,7 @@ TEST(RollingFriction, StopsABallAndLeavesItAtRest) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         const BodyId id = add_ball(bodies, ball);
-        World world(make_simulation(bodies, both_solvers()[round % 2]),
+        World world(make_simulation(bodies, both_settings()[round % 2]),
                     round / 2 % 2 ? 1 : kNoneColoured);
         const double a = ball.deceleration(), time = ball.speed / a;
         run(world, static_cast<int>(std::ceil(1.1 * time / kStep)));
@@ -109,7 +111,7 @@ TEST(RollingFriction, StopsABallAndLeavesItAtRest) {
 
 /// On a slab that can turn, but is far too heavy to, so that all are one island.
 TEST(RollingFriction, SlowsManyBallsOfOneLargeIsland) {
-    for (const PhysicsSettings& settings : both_solvers()) {
+    for (const PhysicsSettings& settings : both_settings()) {
         std::mt19937_64 random(3);
         Bodies bodies;
         BodyType slab = rolling_type(box_type({200, 2, 200, 200}, 1e12), 0);
@@ -151,7 +153,7 @@ TEST(RollingFriction, SlowsABallThatTwistsInPlace) {
         ball.speed = 0;
         const BodyId id = add_ball(bodies, ball);
         bodies.angular_velocity[id] = (first / norm(spin)) * spin;
-        World world(make_simulation(bodies, both_solvers()[round % 2]),
+        World world(make_simulation(bodies, both_settings()[round % 2]),
                     coloured ? 1 : kNoneColoured);
         run(world, 10 + round);
         const double now = std::max(0.0, first - a * (10 + round) * kStep);
@@ -176,7 +178,7 @@ World ball_on_slope(double part, const PhysicsSettings& settings, std::uint32_t 
 
 TEST(RollingFriction, HoldsABallOnASlopeUpToTheArmOverTheRadius) {
     const Vec4 down(0.6, 0, 0, 0.8);
-    for (const PhysicsSettings& settings : both_solvers())
+    for (const PhysicsSettings& settings : both_settings())
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             for (const double part : {0.5, 0.9, 0.99}) {
                 World world = ball_on_slope(part, settings, coloured_from);
@@ -214,7 +216,7 @@ TEST(RollingFriction, IsNothingInTheAirAndWithoutFriction) {
 
 /// As much of it as can be written: a ball slides like a block, slowed by friction alone.
 TEST(RollingFriction, WithoutBoundsKeepsABallFromTurning) {
-    for (const PhysicsSettings& settings : both_solvers())
+    for (const PhysicsSettings& settings : both_settings())
         for (const std::uint32_t coloured_from : {1u, kNoneColoured})
             for (const double most : {1e6, 1e300}) {
                 Bodies bodies;
@@ -231,7 +233,7 @@ TEST(RollingFriction, WithoutBoundsKeepsABallFromTurning) {
 /// Across its length, on both of its ends: the floor takes rolling_friction m g a radian.
 TEST(RollingFriction, TakesACapsulesEnergyByTheAngleThatItRolls) {
     const double radius = 0.3, mass = 2, rolling_friction = 0.02, speed = 1.5;
-    for (const PhysicsSettings& settings : both_solvers())
+    for (const PhysicsSettings& settings : {PhysicsSettings{}, substepped_settings(10)})
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             Bodies bodies;
             add(bodies, rolling_type(plane_type(Vec4::UnitY(), 0), 0));
@@ -266,7 +268,7 @@ Bodies mixed_heap_that_rolls() {
 }
 
 TEST(RollingFriction, StaysWithinItsPartOfEveryNormalImpulse) {
-    for (const PhysicsSettings& settings : both_solvers())
+    for (const PhysicsSettings& settings : both_settings())
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             StageCopy copy(Stage::kFinishStep);
             World world(make_simulation(mixed_heap_that_rolls(), settings), coloured_from);
@@ -302,7 +304,7 @@ TEST(RollingFriction, NeverAddsEnergy) {
     std::mt19937_64 random(6);
     double lost = 0;
     for (int round = 0; round < 300; ++round) {
-        PhysicsSettings settings = both_solvers()[round % 2];
+        PhysicsSettings settings = both_settings()[round % 2];
         settings.gravity.setZero();
         Bodies bodies;
         const double restitution = round / 4 % 3 * 0.5, friction = round / 12 % 2 ? 0.3 : 1.5;

@@ -198,7 +198,9 @@ Difference difference(const Ride& ride, Floor floor, PhysicsSettings settings) {
     return most;
 }
 
-std::array<PhysicsSettings, 2> impulse_and_soft() { return {PhysicsSettings{}, soft_settings()}; }
+std::array<PhysicsSettings, 2> with_and_without_substeps() {
+    return {PhysicsSettings{}, substepped_settings()};
+}
 
 constexpr std::tuple<Kind, double> kRides[] = {
     {Kind::kBox, 0},     {Kind::kBox, 0.3},     {Kind::kSpinningBox, 0},
@@ -207,7 +209,7 @@ constexpr std::tuple<Kind, double> kRides[] = {
 };
 
 void expect_as_on_one_plane(Floor floor, int rides) {
-    for (const PhysicsSettings& settings : impulse_and_soft())
+    for (const PhysicsSettings& settings : with_and_without_substeps())
         for (const auto& [kind, friction] : kRides)
             for (int i = 0; i < rides; ++i) {
                 const Ride ride =
@@ -215,7 +217,7 @@ void expect_as_on_one_plane(Floor floor, int rides) {
                 const Difference most = difference(ride, floor, settings);
                 SCOPED_TRACE(::testing::Message()
                              << "kind " << int(kind) << ", friction " << friction << ", ride " << i
-                             << (settings.solver == Solver::kSoft ? ", soft" : ""));
+                             << ", sub-steps " << settings.substeps);
                 EXPECT_LT(most.path, 1e-3);
                 EXPECT_LT(most.hop, 1e-4);
                 EXPECT_LT(most.speed, 0.01);
@@ -223,9 +225,9 @@ void expect_as_on_one_plane(Floor floor, int rides) {
 }
 
 void expect_as_on_one_plane(const Ride& ride, Floor floor) {
-    for (const PhysicsSettings& settings : impulse_and_soft()) {
+    for (const PhysicsSettings& settings : with_and_without_substeps()) {
         const Difference most = difference(ride, floor, settings);
-        EXPECT_LT(most.path, 1e-3) << (settings.solver == Solver::kSoft ? "soft" : "");
+        EXPECT_LT(most.path, 1e-3) << "sub-steps " << settings.substeps;
         EXPECT_LT(most.hop, 1e-4);
         EXPECT_LT(most.speed, 0.01);
     }
@@ -266,7 +268,7 @@ TEST(Seams, OfTilesSunkInAPlaneAreCrossedAsOnePlane) {
 /// Tiles that are put down side by side on a plane, and stay flush to some 1e-6 m. Where sliding
 /// friction turns a capsule depends on which of them carries it, and is not looked at.
 TEST(SeamsSlow, OfLooseTilesAreCrossedAsOnePlane) {
-    for (const PhysicsSettings& settings : impulse_and_soft())
+    for (const PhysicsSettings& settings : with_and_without_substeps())
         for (const Kind kind : {Kind::kBox, Kind::kBall, Kind::kCapsule}) {
             Ride ride = random_ride(kind, 0, 7 * static_cast<unsigned>(kind));
             ride.tile = 6 * ride.height;
@@ -293,7 +295,7 @@ void add_stairs(Bodies& bodies, double side, int edge, double step) {
 }
 
 TEST(Seams, AStepOfAMillimetreIsNone) {
-    for (const PhysicsSettings& settings : impulse_and_soft())
+    for (const PhysicsSettings& settings : with_and_without_substeps())
         for (std::uint64_t seed = 0; seed < 8; ++seed) {
             Draw draw{std::mt19937_64(seed)};
             const double side = draw.any_size(0.4, 2), size = draw.any_size(0.1, 0.6);
@@ -325,7 +327,7 @@ TEST(Seams, AStepOfAMillimetreIsNone) {
 /// A box that slides along a wall of flush boxes whose lower edges lie in the floor, or beside it.
 /// It has sunk into the floor by a hair, and leans against the wall by another.
 TEST(SeamsSlow, OfAWallOnAFloorAreNone) {
-    for (const PhysicsSettings& settings : impulse_and_soft())
+    for (const PhysicsSettings& settings : with_and_without_substeps())
         for (std::uint64_t seed = 0; seed < 60; ++seed) {
             Draw draw{std::mt19937_64(seed)};
             const double side = draw.any_size(0.5, 2), size = side * draw.number(0.2, 0.4);
@@ -358,7 +360,7 @@ TEST(SeamsSlow, OfAWallOnAFloorAreNone) {
 
 /// What lies in the corner of a floor and walls, on edges and vertices too, stays there.
 void expect_contacts_in_corners(std::uint64_t seeds) {
-    for (const PhysicsSettings& settings : impulse_and_soft())
+    for (const PhysicsSettings& settings : with_and_without_substeps())
         for (std::uint64_t seed = 0; seed < seeds; ++seed) {
             Draw draw{std::mt19937_64(seed)};
             const double side = draw.any_size(0.3, 2);

@@ -74,10 +74,8 @@ Bodies after_run(const std::vector<Place>& order, const PhysicsSettings& setting
 }
 
 TEST(StorageOrder, OfSeparateIslandsChangesNoBitAndWithinAnIslandDoes) {
-    for (const Solver solver : {Solver::kImpulse, Solver::kSoft})
+    for (PhysicsSettings settings : {PhysicsSettings{}, substepped_settings()})
         for (const bool sleeping : {false, true}) {
-            PhysicsSettings settings =
-                solver == Solver::kSoft ? soft_settings() : PhysicsSettings{};
             settings.sleeping = sleeping;
             const Bodies one = after_run(tower_by_tower(), settings);
             EXPECT_TRUE(same_bits(one, after_run(mixed(), settings)));

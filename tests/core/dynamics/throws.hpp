@@ -86,9 +86,9 @@ struct Throw {
     double thickness = 0;  ///< of the wall [m]
 };
 
-inline Throw empty_throw(std::mt19937_64& random, bool soft) {
+inline Throw empty_throw(std::mt19937_64& random, bool substeps) {
     Throw scene;
-    scene.settings = soft ? soft_settings() : PhysicsSettings{};
+    scene.settings = substeps ? substepped_settings() : PhysicsSettings{};
     if (random() % 2 == 0) scene.settings.gravity.setZero();
     scene.dt = 1 / spread(random, 60, 240);
     return scene;
@@ -102,8 +102,8 @@ inline double random_part(std::mt19937_64& random) {
 
 /// A body thrown at a wall of 1 mm to 1 m at 0.1 to 20 of its sizes a step, from anywhere within
 /// three steps, turning by up to 3 radians a step in each plane.
-inline Throw throw_at_wall(std::mt19937_64& random, int kind, bool soft) {
-    Throw scene = empty_throw(random, soft);
+inline Throw throw_at_wall(std::mt19937_64& random, int kind, bool substeps) {
+    Throw scene = empty_throw(random, substeps);
     scene.thickness = spread(random, 0.001, 1);
     const double friction = random_part(random), restitution = random_part(random);
     BodyType wall = box_type({scene.thickness, 200, 200, 200});
@@ -127,8 +127,8 @@ inline Throw throw_at_wall(std::mt19937_64& random, int kind, bool soft) {
 
 /// Two bodies on the way to each other, the first one perhaps fixed.
 inline Throw throw_at_each_other(std::mt19937_64& random, int kind, int other, bool fixed,
-                                 bool soft) {
-    Throw scene = empty_throw(random, soft);
+                                 bool substeps) {
+    Throw scene = empty_throw(random, substeps);
     scene.settings.gravity.setZero();
     const double friction = random_part(random), restitution = random_part(random);
     BodyType target = thrown_type(random, other, friction, restitution);

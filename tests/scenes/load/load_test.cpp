@@ -264,17 +264,15 @@ TEST(LoadScene, TakesEveryKeyOfPhysicsOrItsDefault) {
     EXPECT_EQ(plain.iterations, defaults.iterations);
     EXPECT_EQ(plain.tolerance, defaults.tolerance);
     EXPECT_EQ(plain.substeps, defaults.substeps);
-    EXPECT_EQ(plain.solver, defaults.solver);
     EXPECT_EQ(plain.integrator, defaults.integrator);
     EXPECT_EQ(plain.sleeping, defaults.sleeping);
     const char* all =
-        "[physics]\ntolerance = 0.001\nsubsteps = 1000\nsolver = \"soft\"\nintegrator = "
+        "[physics]\ntolerance = 0.001\nsubsteps = 1000\nsolver = \"impulse\"\nintegrator = "
         "\"euler\"\nsleeping = true\n";
     for (const std::string& text : {std::string(all), load_text(all).effective}) {
         const Scene scene = load_text(text);
         EXPECT_EQ(scene.physics->tolerance, 0.001);
         EXPECT_EQ(scene.physics->substeps, 1000);
-        EXPECT_EQ(scene.physics->solver, Solver::kSoft);
         EXPECT_EQ(scene.physics->integrator, RotationIntegrator::kEuler);
         EXPECT_TRUE(scene.physics->sleeping);
         EXPECT_EQ(scene.hash, load_text(all).hash);
@@ -365,7 +363,6 @@ TEST(SceneHash, SeesEveryValue) {
                                "physics.steps_per_second=1",
                                "physics.iterations=1",
                                "physics.substeps=2",
-                               "physics.solver=\"soft\"",
                                "physics.sleeping=true",
                                "physics.integrator=\"euler\"",
                                "body.floor.offset=1",

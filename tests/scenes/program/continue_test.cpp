@@ -43,7 +43,7 @@ void expect_bytes_of_one_straight_run(bool each) {
         {},
         {"--store-every", "7", "--set", "body.floor.rolling_friction=0.02"},
         {"--set", "body.floor.rolling_friction=0.02", "--set", "physics.sleeping=true", "--set",
-         "physics.solver=\"soft\"", "--set", "physics.substeps=3"}};
+         "physics.substeps=3"}};
     for (const std::vector<std::string>& every : settings) {
         const auto straight = folder.file("straight.h5");
         fs::remove(straight);

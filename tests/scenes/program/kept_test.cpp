@@ -34,13 +34,13 @@ class Kept : public ::testing::Test {
                       stopped_ = folder_.file("stopped.h5");
 };
 
-TEST_F(Kept, AnotherVersionOfMotionIsNotContinued) {
+TEST_F(Kept, MotionOfTheSolverThatWasRemovedIsNotContinued) {
     const std::string file = film_ + "/trajectory.h5", before = content(file);
     for (const std::string& to : {file, stopped_}) {
         const Outcome outcome =
             tesserae({"simulate", scene_, "-o", to, "--set", "physics.duration=60"});
         EXPECT_EQ(outcome.status, 2);
-        EXPECT_NE(outcome.err.find("moved by motion version 1"), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find("solver = \"soft\" there"), std::string::npos) << outcome.err;
     }
     EXPECT_EQ(content(file), before);
 }
@@ -60,6 +60,10 @@ TEST_F(Kept, TrajectoriesAndFramesAreRead) {
     EXPECT_FALSE(frame.contains("tesserae/motionVersion"));
     EXPECT_EQ(result_of({"info", again + "/frames/kept.0002.exr"})["tesserae/motionVersion"], 1);
     EXPECT_EQ(result_of({"info", scene_})["bodies"], 14);
+    // Its bodies were moved by a solver that the program no longer has.
+    const std::string made = film_ + "/trajectory.h5", page = folder_.file("page.html");
+    EXPECT_GT(result_of({"export", made, "--format", "ply", "-o", again + "-ply"})["written"], 0);
+    EXPECT_EQ(result_of({"view", made, "-o", page})["scene"], "kept");
 }
 
 }  // namespace

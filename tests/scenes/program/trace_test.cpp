@@ -16,7 +16,7 @@ namespace {
 constexpr int kSteps = 12, kSubsteps = 2;
 const std::set<std::string> kStagesOfSubstep = {
     "advance_first_half",   "find_pairs",    "find_contacts",       "build_islands", "solve_blows",
-    "integrate_velocities", "solve_islands", "advance_second_half", "relax_islands"};
+    "integrate_velocities", "solve_islands", "advance_second_half", "drop_corrections"};
 
 std::vector<std::string> arguments(const Folder& folder, const std::string& trace) {
     return {"simulate",
@@ -54,7 +54,7 @@ TEST(ProgramTrace, HasASpanForEveryStageAndMessagesOfIslandsWithinTheirs) {
         const double begin = event["ts"], duration = event["dur"];
         EXPECT_GE(begin, 0);
         EXPECT_GE(duration, 0);
-        if (name == "solve_blows" || name == "solve_islands" || name == "relax_islands")
+        if (name == "solve_blows" || name == "solve_islands" || name == "drop_corrections")
             solving.push_back({begin, begin + duration});
         if (name == parallel::kIslandsSpan) messages.push_back({begin, begin + duration});
     }
@@ -64,7 +64,8 @@ TEST(ProgramTrace, HasASpanForEveryStageAndMessagesOfIslandsWithinTheirs) {
     EXPECT_EQ(count.size(), kStagesOfSubstep.size() + 2);
     EXPECT_GE(threads.size(), 1u);
     EXPECT_LE(threads.size(), 2u);
-    // Every contact is solved once and relaxed once, in more messages than one a stage.
+    // Every contact is solved once and its correction dropped once, in more messages than one a
+    // stage.
     EXPECT_EQ(size[parallel::kIslandsSpan], 2 * size["build_islands"]);
     EXPECT_GT(messages.size(), 10 * solving.size());
     for (const Span& message : messages) {

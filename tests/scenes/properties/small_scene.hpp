@@ -21,7 +21,7 @@ struct SmallScene {
 
 /// Draws a scene of 2 to 12 bodies of all shapes that meet within some steps, from half a size to
 /// 1.6 sizes of each other: with any friction, restitution and masses; thin, fast, fixed and driven
-/// ones; in the air, on planes, stacked or inside each other; with any settings but Solver::kSoft.
+/// ones; in the air, on planes, stacked or inside each other; with any settings.
 /// The same seed gives the same scene everywhere.
 SmallScene draw_small_scene(std::uint64_t seed);
 

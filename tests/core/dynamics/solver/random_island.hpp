@@ -19,9 +19,8 @@ inline Bivector random_bivector(Generator& random) {
     return wedge(a, b) + wedge(c, d);
 }
 
-inline PhysicsSettings settings_of(Solver solver, int iterations) {
+inline PhysicsSettings settings_of(int iterations) {
     PhysicsSettings settings;
-    settings.solver = solver;
     settings.iterations = iterations;
     settings.tolerance = 0;
     return settings;
@@ -36,7 +35,7 @@ struct Unsolved {
 /// Bodies of all shapes that move at random and touch at random, one to eight points a pair, body 1
 /// all others: so many pairs that some are left over. Boxes are `thinnest` along y. Two bodies do
 /// not move, two only turn.
-inline Unsolved random_island(Solver solver, double friction, bool spheres_only, double rolling = 0,
+inline Unsolved random_island(double friction, bool spheres_only, double rolling = 0,
                               double thinnest = 0.5) {
     Generator random(3);
     Bodies bodies;
@@ -55,7 +54,7 @@ inline Unsolved random_island(Solver solver, double friction, bool spheres_only,
         const Bivector omega = random_bivector(random), turn = random_bivector(random);
         add(bodies, type, place, velocity, omega, exp(turn));
     }
-    Unsolved world{make_simulation(bodies, settings_of(solver, 5)), {}};
+    Unsolved world{make_simulation(bodies, settings_of(5)), {}};
     begin_step(world.simulation, world.step, kStep);
     advance_first_half(world.simulation, world.step, {0, kCount});
     for (BodyId a = 0; a < kCount; ++a)

@@ -9,7 +9,7 @@ namespace {
 using namespace testing;
 
 TEST(SlipByTurning, InLanesIsThatOfEachContact) {
-    Unsolved island = random_island(Solver::kImpulse, 0.5, true);
+    Unsolved island = random_island(0.5, true);
     const Simulation& simulation = island.simulation;
     StepData& step = island.step;
     const ColouredStage stage{simulation, step, 1, Cause::kLoad, {}};

@@ -87,7 +87,7 @@ TEST(Needs, RollingFrictionNeedsFrictionAndWhatCanTurn) {
 
 /// All steps with every part against those with what was decided: the parts left out add zeros.
 TEST(Needs, WhatIsLeftOutWouldChangeNothing) {
-    for (const PhysicsSettings& settings : {PhysicsSettings{}, soft_settings()})
+    for (const PhysicsSettings& settings : {PhysicsSettings{}, substepped_settings()})
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             const Bodies bodies = smooth_heap(150);
             const Simulation start = make_simulation(bodies, settings);
