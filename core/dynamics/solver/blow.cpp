@@ -61,7 +61,9 @@ bool can_jam(const Simulation& simulation, const Blow& blow) {
     return simulation.needs.friction && simulation.needs.turning && !blow.driven;
 }
 
-bool has_jammed(double before, double after) { return !(after <= (1 + kNotJammed) * before); }
+bool has_jammed(const std::array<double, 2>& energies) {
+    return !(energies[1] <= (1 + kNotJammed) * energies[0]);
+}
 
 RestitutionSums& RestitutionSums::operator+=(const RestitutionSums& sums) {
     taken_squared += sums.taken_squared, given_squared += sums.given_squared;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,7 +27,7 @@ double twice_kinetic_energy(const Simulation& simulation, const StepData& step, 
 /// without friction, which takes energy whatever the bodies.
 bool can_jam(const Simulation& simulation, const Blow& blow);
 /// Whether it has: an energy, or a multiple of it, before the compression and after it.
-bool has_jammed(double before, double after);
+bool has_jammed(const std::array<double, 2>& energies);
 
 // What restitution gave is cut, of all bodies of an island alike, so that no blow adds energy.
 //

@@ -73,18 +73,19 @@ void take_push_back(const ColouredStage& stage, Range bodies);
 /// One coloured island and its colours.
 class ColouredIsland {
   public:
-    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island, Cause cause,
-                   bool friction = true)
+    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island)
         : all_(step.coloured),
           number_(island),
           place_(step.islands.coloured[island]),
-          stage_{simulation,
-                 step,
-                 all_.mass_unit[place_],
-                 cause,
-                 parting_of(step, island),
-                 friction,
-                 step.has_rows[island] != 0} {}
+          stage_{simulation, step, all_.mass_unit[place_]} {}
+
+    /// What follows is for this cause. Rows that a blow has made stay for the load.
+    void begin(Cause cause) {
+        stage_.cause = cause;
+        stage_.parting = parting_of(stage_.step, number_);
+        stage_.made = stage_.step.has_rows[number_] != 0;
+    }
+    void leave_friction_out() { stage_.friction = false; }
 
     const ColouredStage& stage() const { return stage_; }
     std::size_t number() const { return number_; }  ///< among all islands

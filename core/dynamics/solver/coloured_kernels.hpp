@@ -46,8 +46,8 @@ struct ColouredStage {
     const Simulation& simulation;
     StepData& step;
     double mass_unit;  ///< [kg]
-    Cause cause;
-    Parting parting;
+    Cause cause = Cause::kLoad;
+    Parting parting = {};
     bool friction = true;  ///< false: without
     bool made = false;     ///< the rows are those of the blow before, but for what they start from
 };

@@ -51,6 +51,7 @@ void BlowPatches::begin(const Simulation& simulation, StepData& step,
     step.rows.resize(rows_);
     if (simulation.needs.rolling) step.rolling_rows.resize(rows_);
     step.bodies_of_rows.resize(2 * rows_);
+    step.motions_of_rows.resize(2 * rows_);
 }
 
 /// @return how many of the bodies (places in ColouredIslands::bodies) are hit

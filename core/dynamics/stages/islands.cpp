@@ -40,6 +40,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     resize_anew(step.rows, rows);
     if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
     resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});
+    resize_anew(step.motions_of_rows, 2 * std::size_t{rows});
 }
 
 bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {

@@ -190,7 +190,9 @@ struct StepData {
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<BlowMotion> blow_motion;  ///< of every body, where there is restitution
-    std::vector<BodyId> bodies_of_rows;   ///< room for two for each of `rows`
+    // Room for two for each of `rows`: an island's bodies, and how they moved before its impulses.
+    std::vector<BodyId> bodies_of_rows;
+    std::vector<BodyMotion> motions_of_rows;
     std::vector<std::uint8_t> has_rows;   ///< of every island: its rows are made
     std::vector<std::uint8_t> was_hit;    ///< of every island: there was a blow
     std::vector<Awaits> awaits;           ///< of every island

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kSteps = 12, kSubsteps = 2;
 const std::set<std::string> kStagesOfSubstep = {
-    "advance_first_half",   "find_pairs",    "find_contacts",       "build_islands", "solve_blows",
-    "integrate_velocities", "solve_islands", "advance_second_half", "drop_corrections"};
+    "advance_first_half", "find_pairs",          "find_contacts",
+    "build_islands",      "solve_blows",         "integrate_velocities",
+    "solve_islands",      "advance_second_half", "drop_corrections"};
 
 std::vector<std::string> arguments(const Folder& folder, const std::string& trace) {
     return {"simulate",

@@ -1,0 +1,329 @@
+#include "core/dynamics/solver/plain_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/dynamics/solver/contact_row.hpp"
+#include "core/dynamics/solver/rolling_row.hpp"
+#include "core/dynamics/solver/solve_island.hpp"
+
+namespace tesserae {
+
+static_assert(IslandRows<PlainRows>);
+
+namespace {
+
+template <bool kTurning>
+void apply_impulse(const Simulation& simulation, StepData& step, BodyId id, const Vec4& r,
+                   const Vec4& impulse) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (!type.movable) return;
+    step.velocity[id] += type.inverse_mass * impulse;
+    if constexpr (kTurning)
+        step.angular_velocity[id] += angular_response(simulation, step, id, wedge(r, impulse));
+}
+
+template <bool kTurning>
+void apply_impulse(const Simulation& simulation, StepData& step, const ContactRow& row,
+                   const Vec4& impulse) {
+    apply_impulse<kTurning>(simulation, step, row.a, row.r_a, -impulse);
+    apply_impulse<kTurning>(simulation, step, row.b, row.r_b, impulse);
+}
+
+/// The friction impulse for a relative velocity v: that which ends the slip, if friction allows it.
+/// Else the largest that it allows, against the slip: clamping the former would be against what
+/// turns into the slip by the bodies' responses, and a box that slides on its corners would push
+/// each aside instead of slowing down (by 24 % too little). A step against the slip itself ends
+/// where both are parallel.
+Vec4 friction_impulse(const ContactRow& row, const Vec4& v) {
+    const Vec4 slip = v - row.normal.dot(v) * row.normal;
+    const double most = row.friction * row.normal_impulse;
+    const Vec4 impulse = row.tangent_impulse - row.tangent_mass * slip;
+    if (impulse.squaredNorm() <= most * most) return impulse;
+    return clamped_to_ball(row.tangent_impulse - row.slide_mass * slip, most);
+}
+
+/// Of a row's impulses in a sweep [N s].
+struct RowChange {
+    double normal = 0;
+    Vec4 tangent = Vec4::Zero();
+};
+
+/// The normal first and then friction, so that no contact ends with more of it than its normal
+/// impulse allows; what the normal impulse does to the slip is known from the row, so that the
+/// bodies' velocities are read and written once.
+template <double ContactTargets::*kTarget, bool kTurning, bool kFriction>
+RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& row) {
+    const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
+    const double left = row.targets.*kTarget - row.normal.dot(v);
+    const double normal = std::max(0.0, row.normal_impulse + row.normal_mass * left);
+    const double change = normal - row.normal_impulse;
+    if (change == 0 && normal == 0) return {};  // apart, and friction is 0 too
+    row.normal_impulse = normal;
+    RowChange changes{change};
+    if (kFriction && row.friction > 0) {
+        const Vec4 tangent =
+            friction_impulse(row, v + change * row.normal_response + row.slip_by_turning);
+        changes.tangent = tangent - row.tangent_impulse;
+        row.tangent_impulse = tangent;
+    }
+    apply_impulse<kTurning>(simulation, step, row, change * row.normal + changes.tangent);
+    return changes;
+}
+
+/// The larger of the velocities along and across the normal that a change makes up for [m/s].
+double velocity_left(const ContactRow& row, const RowChange& change) {
+    const double along = change.normal != 0 ? std::abs(change.normal) / row.normal_mass : 0;
+    return row.slide_mass > 0 ? std::max(along, change.tangent.norm() / row.slide_mass) : along;
+}
+
+}  // namespace
+
+Blow PlainRows::blow() const {
+    return blow_of_runs(simulation_, step_, step_.islands.runs_in(island_));
+}
+
+Effort PlainRows::effort_of(const Blow& blow) const {
+    return step_.awaits[island_] == Awaits::kPatch
+               ? effort_of_patch(simulation_, rows().size(), blow.fastest)
+               : effort_of_blow(simulation_, rows().size(), blow.fastest);
+}
+
+/// Calls visit(row, contact) for all rows; contact: its place in the list.
+template <class Visit>
+void PlainRows::for_each_row(const Visit& visit) const {
+    ContactRow* row = rows().data();
+    for (const std::uint32_t n : step_.islands.runs_in(island_)) {
+        const ContactList::Run run = step_.contacts.nth_run(n);
+        for (std::size_t contact = run.begin; contact < run.end; ++contact) visit(*row++, contact);
+    }
+}
+
+void PlainRows::list_bodies() {
+    const std::size_t place = 2 * step_.islands.first_row[island_];
+    BodyId* const first = &step_.bodies_of_rows[place];
+    BodyId* end = first;
+    for (const std::uint32_t n : step_.islands.runs_in(island_)) {
+        const ContactList::Run run = step_.contacts.nth_run(n);
+        for (const BodyId id : {run.a, run.b})
+            if (simulation_.type_of(id).movable) *end++ = id;
+    }
+    std::sort(first, end);
+    bodies_ = {first, std::unique(first, end)};
+    motions_ = {&step_.motions_of_rows[place], bodies_.size()};
+}
+
+void PlainRows::keep_motions() {
+    if (bodies_.empty()) list_bodies();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) motions_[i] = motion_of(step_, bodies_[i]);
+}
+
+void PlainRows::restore_motions() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        step_.velocity[bodies_[i]] = motions_[i].velocity;
+        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+    }
+}
+
+void PlainRows::make_rows() {
+    const bool made = step_.has_rows[island_];
+    const Parting parting = parting_of(step_, island_);
+    ContactRow* row = rows().data();
+    const auto start = [&](std::size_t place, const Parting& of_pair) {
+        const Contact contact = step_.contacts[place];
+        if (!made) *row = make_row(simulation_, step_, contact);
+        if (!friction_) row->friction = 0;
+        const ContactImpulse last =
+            cause_ == Cause::kLoad ? step_.impulses[place] : ContactImpulse{};
+        start_row(simulation_, step_, contact, place, last, cause_, of_pair, *row);
+        if (!simulation_.needs.rolling) return;
+        RollingRow& rolling = rolling_row_of(*row);
+        if (!made) rolling = make_rolling_row(simulation_, step_, *row);
+        if (!friction_) rolling.arm = 0;
+        start_rolling_row(*row, cause_ == Cause::kLoad ? step_.angular_impulses[place] : Bivector{},
+                          rolling);
+    };
+    for (const std::uint32_t n : step_.islands.runs_in(island_)) {
+        const ContactList::Run run = step_.contacts.nth_run(n);
+        const Parting of_pair = parting.at(step_, {run.begin, run.end});
+        for (std::size_t place = run.begin; place < run.end; ++place, ++row) start(place, of_pair);
+    }
+    step_.has_rows[island_] = friction_;  // without, they are not those of the contacts
+}
+
+void PlainRows::start(Cause cause) {
+    cause_ = cause;
+    if (bodies_.empty())
+        keep_motions();
+    else
+        restore_motions();
+    make_rows();
+    if (cause == Cause::kLoad) apply_part(1);
+}
+
+/// @return the largest velocity_left() if it is measured, else 0
+template <double ContactTargets::*kTarget, bool kTurning, bool kFriction, bool kRolling>
+double PlainRows::sweep_rows(Sweep sweep) {
+    double residual = 0;
+    const std::span<ContactRow> all = rows();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        ContactRow& row = all[sweep.backward ? all.size() - 1 - i : i];
+        const RowChange change = solve_row<kTarget, kTurning, kFriction>(simulation_, step_, row);
+        if constexpr (kRolling) solve_rolling_row(simulation_, step_, row, rolling_row_of(row));
+        if (sweep.measured) residual = std::max(residual, velocity_left(row, change));
+    }
+    return residual;
+}
+
+template <bool kTurning, bool kRolling>
+double PlainRows::sweep(Sweep sweep) {
+    switch (sweep.pass) {
+        case Pass::kSolve:
+            return sweep_rows<&ContactTargets::first, kTurning, true, kRolling>(sweep);
+        case Pass::kRestitution:
+            return sweep_rows<&ContactTargets::second, kTurning, true, kRolling>(sweep);
+        default:
+            return sweep_rows<&ContactTargets::second, kTurning, false, false>(sweep);
+    }
+}
+
+double PlainRows::iterate(Pass pass, const Effort& effort) {
+    const Needs& needs = simulation_.needs;
+    return tesserae::iterate(pass, effort, [&](Sweep one) {
+        if (needs.rolling) return sweep<true, true>(one);
+        return needs.turning ? sweep<true, false>(one) : sweep<false, false>(one);
+    });
+}
+
+void PlainRows::apply_impulse(const ContactRow& row, const Vec4& impulse) {
+    if (simulation_.needs.turning)
+        tesserae::apply_impulse<true>(simulation_, step_, row, impulse);
+    else
+        tesserae::apply_impulse<false>(simulation_, step_, row, impulse);
+}
+
+/// Of the rows' impulses.
+void PlainRows::apply_part(double part) {
+    for (const ContactRow& row : rows()) {
+        apply_impulse(row, part * (row.normal_impulse * row.normal + row.tangent_impulse));
+        if (simulation_.needs.rolling)
+            apply_angular_impulse(simulation_, step_, row.a, row.b,
+                                  part * angular_impulse_of(row, rolling_row_of(row)));
+    }
+}
+
+/// What the rows' impulses times their velocities are, less those times the targets.
+double PlainRows::work() const {
+    double sum = 0;
+    for (const ContactRow& row : rows()) {
+        const Vec4 v =
+            relative_velocity(step_, row.a, row.r_a, row.b, row.r_b, simulation_.needs.turning);
+        sum += row.normal_impulse * (row.normal.dot(v) - row.targets.first);
+        sum += row.tangent_impulse.dot(v + row.slip_by_turning);
+        if (simulation_.needs.rolling)
+            sum += dot(angular_impulse_of(row, rolling_row_of(row)),
+                       step_.angular_velocity[row.b] - step_.angular_velocity[row.a]);
+    }
+    return sum;
+}
+
+/// Between what they are and what they were before the rows' impulses.
+void PlainRows::swap_motions() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        std::swap(step_.velocity[bodies_[i]], motions_[i].velocity);
+        std::swap(step_.angular_velocity[bodies_[i]], motions_[i].angular_velocity);
+    }
+}
+
+/// What impulses have changed of the velocities that they work on is twice their energy.
+LoadWork PlainRows::load() {
+    const double after = work();
+    swap_motions();
+    const double before = work();
+    swap_motions();
+    return {before, after - before};
+}
+
+void PlainRows::leave_part(double part) {
+    apply_part(part - 1);
+    for (ContactRow& row : rows()) {
+        row.normal_impulse *= part;
+        row.tangent_impulse *= part;
+        if (!simulation_.needs.rolling) continue;
+        RollingRow& rolling = rolling_row_of(row);
+        rolling.rolling.impulse *= part;
+        rolling.twisting.impulse *= part;
+    }
+}
+
+std::array<double, 2> PlainRows::energies() const {
+    std::array<double, 2> sums = {};
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        sums[0] += twice_kinetic_energy(simulation_, step_, bodies_[i], motions_[i]);
+        sums[1] +=
+            twice_kinetic_energy(simulation_, step_, bodies_[i], motion_of(step_, bodies_[i]));
+    }
+    return sums;
+}
+
+void PlainRows::keep_blow_motion() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        step_.blow_motion[bodies_[i]] = {motions_[i], motion_of(step_, bodies_[i])};
+}
+
+RestitutionSums PlainRows::restitution() const {
+    return restitution_of(simulation_, step_, bodies_);
+}
+
+void PlainRows::leave_part_of_restitution(double part) {
+    tesserae::leave_part_of_restitution(simulation_, step_, bodies_, part);
+}
+
+void PlainRows::keep() {
+    for_each_row([&](const ContactRow& row, std::size_t contact) {
+        if (cause_ == Cause::kBlow) {
+            step_.hit[contact] = row.normal_impulse > 0;
+            return;
+        }
+        step_.impulses[contact] = contact_impulse(row.normal_impulse, row.tangent_impulse);
+        if (simulation_.needs.rolling)
+            step_.angular_impulses[contact] = angular_impulse_of(row, rolling_row_of(row));
+    });
+}
+
+void PlainRows::begin_push() { keep_motions(); }
+
+/// Nothing is turned where turns_push() says so of any body.
+void PlainRows::end_push() {
+    bool turns = false;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        const Bivector& turning = step_.angular_velocity[bodies_[i]];
+        turns |= turns_push(simulation_, step_, bodies_[i], turning,
+                            turning - motions_[i].angular_velocity);
+    }
+    if (!turns) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+    step_.pushed[island_] = Push::kStraight;
+}
+
+/// From the rows' impulses to those of the load.
+void PlainRows::take_push_back() {
+    const bool straight = step_.pushed[island_] == Push::kStraight;
+    if (straight) keep_motions();
+    for_each_row([&](const ContactRow& row, std::size_t contact) {
+        const ContactImpulse& load = step_.impulses[contact];
+        apply_impulse(row, (load.normal - row.normal_impulse) * row.normal +
+                               (load.tangent() - row.tangent_impulse));
+        if (simulation_.needs.rolling)
+            apply_angular_impulse(
+                simulation_, step_, row.a, row.b,
+                step_.angular_impulses[contact] - angular_impulse_of(row, rolling_row_of(row)));
+    });
+    if (!straight) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+}
+
+}  // namespace tesserae
