@@ -19,7 +19,7 @@ constexpr int kCoarsest = 240, kFinest = 7680;
 
 /// How much of the two engines' own errors, added up, they may differ by at the finest step. The
 /// errors are estimates: exact as h goes to 0 if they are of first order and smooth, as Bullet's
-/// fall is, where the quotient tends to 1. Impacts fall somewhere within a step.
+/// fall is, where the quotient tends to 1. FastBodies fall somewhere within a step.
 constexpr double kFactor = 1.5;
 /// What rounding adds up to at most, whatever the step [m, rad]: the solver works in single
 /// precision (6e-8 of a few m/s and rad/s), and the box moves and turns for seconds at such an

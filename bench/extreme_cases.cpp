@@ -97,7 +97,7 @@ ExtremeCase bouncing() {
 
 /// The last body hits the others. How fast it comes back, and how much energy there is at most.
 /// @param towards   unit, the way it comes
-ExtremeCase blow(std::string name, const Bodies& bodies, const Vec4& towards, bool falls) {
+ExtremeCase impact(std::string name, const Bodies& bodies, const Vec4& towards, bool falls) {
     return {std::move(name), [=](PhysicsSettings settings) -> Measurements {
                 if (!falls) settings.gravity.setZero();
                 World world(bodies, settings);
@@ -154,34 +154,34 @@ Bodies ball_on_tower(double mass, double friction) {
 }
 
 /// Restitution 0 but for the last three.
-std::vector<ExtremeCase> blows() {
+std::vector<ExtremeCase> impacts() {
     std::vector<ExtremeCase> cases;
     for (const double mass : {10.0, 100.0}) {
         Bodies boxes = tower({1, mass});
         boxes.position.back()[1] += 2;
-        cases.push_back(blow(fmt::format("box of {:g} kg falls 2 m onto one of 1 kg", mass), boxes,
-                             -Vec4::UnitY(), true));
+        cases.push_back(impact(fmt::format("box of {:g} kg falls 2 m onto one of 1 kg", mass),
+                               boxes, -Vec4::UnitY(), true));
     }
     for (const double mass : {20.0, 100.0, 1000.0})
-        cases.push_back(blow(fmt::format("ball of {:g} kg hits six of 1 kg before a wall", mass),
-                             row_of_balls(6, mass, 0, true), Vec4::UnitX(), false));
-    cases.push_back(blow("box of 20 kg hits six of 1 kg, gaps of 3 mm, before a wall",
-                         row_of_boxes(6, 20, 0.003), Vec4::UnitX(), false));
+        cases.push_back(impact(fmt::format("ball of {:g} kg hits six of 1 kg before a wall", mass),
+                               row_of_balls(6, mass, 0, true), Vec4::UnitX(), false));
+    cases.push_back(impact("box of 20 kg hits six of 1 kg, gaps of 3 mm, before a wall",
+                           row_of_boxes(6, 20, 0.003), Vec4::UnitX(), false));
     for (const double friction : {0.9, 1.2})
         cases.push_back(
-            blow(fmt::format("ball of 1000 kg falls 1 m onto five boxes of 1 kg, friction {:g}",
-                             friction),
-                 ball_on_tower(1000, friction), -Vec4::UnitY(), true));
-    cases.push_back(blow("ball of 100 kg hits one of 1 kg before a wall, restitution 0.9",
-                         row_of_balls(1, 100, 0.9, true), Vec4::UnitX(), false));
-    cases.push_back(blow("ball hits four others, restitution 1", row_of_balls(4, 1, 1, false),
-                         Vec4::UnitX(), false));
+            impact(fmt::format("ball of 1000 kg falls 1 m onto five boxes of 1 kg, friction {:g}",
+                               friction),
+                   ball_on_tower(1000, friction), -Vec4::UnitY(), true));
+    cases.push_back(impact("ball of 100 kg hits one of 1 kg before a wall, restitution 0.9",
+                           row_of_balls(1, 100, 0.9, true), Vec4::UnitX(), false));
+    cases.push_back(impact("ball hits four others, restitution 1", row_of_balls(4, 1, 1, false),
+                           Vec4::UnitX(), false));
     Bodies tumbling;
     add(tumbling, plane_type(Vec4::UnitY(), 0, 0.5, 0.9), Vec4::Zero());
     BodyType box = box_type({1, 0.6, 0.8, 0.5}, 2);
     box.restitution = 0.9;
     add(tumbling, box, {0, 2, 0, 0}, {3, 0, 1, 0}, {8, -3, 2, 5, -4, 1});
-    cases.push_back(blow("tumbling box, restitution 0.9", tumbling, -Vec4::UnitY(), true));
+    cases.push_back(impact("tumbling box, restitution 0.9", tumbling, -Vec4::UnitY(), true));
     return cases;
 }
 
@@ -396,7 +396,7 @@ std::vector<ExtremeCase> extreme_cases(bool with_long) {
     cases.push_back(staying("8 spheres deep in each other, 4 s", deep_spheres(), 1, 4));
     cases.push_back(staying("capsule 10^4 times as long as wide, 4 s", long_capsule(), 0.02, 4));
     for (ExtremeCase& rotation : rotations()) cases.push_back(std::move(rotation));
-    for (ExtremeCase& hit : blows()) cases.push_back(std::move(hit));
+    for (ExtremeCase& hit : impacts()) cases.push_back(std::move(hit));
     cases.push_back(seams("box slides over seams", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0));
     cases.push_back(
         seams("box slides over seams, friction 0.3", box_type({0.4, 0.3, 0.3, 0.3}, 1), 0.3));

@@ -16,7 +16,7 @@
 #include "bench/thread_time.hpp"
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/solver/solver.hpp"
-#include "core/dynamics/stages/stage_copy.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/sort_and_sweep.hpp"
 #include "parallel/threads.hpp"

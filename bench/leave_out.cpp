@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "bench/thread_time.hpp"
+#include "core/dynamics/islands/islands.hpp"
+#include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/solver/solver.hpp"
-#include "core/dynamics/stages/islands.hpp"
-#include "core/dynamics/stages/motion.hpp"
-#include "core/dynamics/stages/stage_copy.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film/film.hpp"

@@ -4,7 +4,7 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/stages/schedule.hpp"
+#include "core/dynamics/step/schedule.hpp"
 #include "parallel/parallel_world.hpp"
 
 namespace tesserae::bench {

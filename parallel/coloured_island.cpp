@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/dynamics/solver/coloured_solver.hpp"
+#include "core/dynamics/solver/coloured_rows.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
@@ -56,9 +56,9 @@ class AllThreads {
 
 }  // namespace
 
-void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.awaits[island] == Awaits::kNothing) return;
-    tesserae::solve_coloured_blow(simulation, step, island, AllThreads{});
+    tesserae::solve_coloured_impact(simulation, step, island, AllThreads{});
 }
 
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island) {

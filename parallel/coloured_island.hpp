@@ -4,10 +4,10 @@
 
 namespace tesserae::parallel {
 
-/// core's solve_blow(), solve_island() and drop_correction() of a coloured island on all threads:
+/// core's solve_impact(), solve_island() and drop_correction() of a coloured island on all threads:
 /// colour by colour, the contacts of a colour at once, with the same bits. What is left over is
 /// solved by one thread.
-void solve_coloured_blow(const Simulation& simulation, StepData& step, std::size_t island);
+void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island);
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
 void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island);
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/step/step_data.hpp"
 #include "parallel/trace.hpp"
 
 namespace tesserae::parallel {

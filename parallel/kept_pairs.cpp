@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/dynamics/stages/pairs.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
 
 namespace tesserae::parallel {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dynamics/stages/chunked_list.hpp"
+#include "core/dynamics/contacts/chunked_list.hpp"
 #include "parallel/sort_and_sweep.hpp"
 
 namespace tesserae::parallel {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae::parallel {
 

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/counting_sort.hpp"
-#include "core/dynamics/stages/pairs.hpp"
-#include "core/dynamics/state/room.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
+#include "core/dynamics/step/room.hpp"
 
 namespace tesserae::parallel {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dynamics/stages/chunked_list.hpp"
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/contacts/chunked_list.hpp"
+#include "core/dynamics/step/step_data.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {

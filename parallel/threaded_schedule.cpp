@@ -24,8 +24,8 @@ void ThreadedSchedule::choose_pairs(const Simulation& simulation, StepData& step
     kept_pairs_.choose_pairs(simulation, step);
 }
 
-void ThreadedSchedule::solve_blows(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, solve_blow, solve_coloured_blow, trace_);
+void ThreadedSchedule::solve_impacts(const Simulation& simulation, StepData& step) {
+    island_graph_.run(simulation, step, solve_impact, solve_coloured_impact, trace_);
 }
 
 void ThreadedSchedule::solve_islands(const Simulation& simulation, StepData& step) {

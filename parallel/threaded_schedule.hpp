@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/stages/schedule.hpp"
+#include "core/dynamics/step/schedule.hpp"
 #include "parallel/island_graph.hpp"
 #include "parallel/kept_pairs.hpp"
 
@@ -24,7 +24,7 @@ class ThreadedSchedule : public Schedule {
     bool any_range(std::size_t count, std::size_t grain, FunctionRef<bool(Range)> test) override;
     void find_pairs(const Simulation& simulation, StepData& step) override;
     void choose_pairs(const Simulation& simulation, StepData& step) override;
-    void solve_blows(const Simulation& simulation, StepData& step) override;
+    void solve_impacts(const Simulation& simulation, StepData& step) override;
     void solve_islands(const Simulation& simulation, StepData& step) override;
     void drop_corrections(const Simulation& simulation, StepData& step) override;
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/motion_version.hpp"
-#include "core/dynamics/state/bodies.hpp"
 #include "render/description.hpp"
 #include "render/file/stamp.hpp"
 #include "render/mattes.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 
 namespace tesserae::scenes {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/step/settings.hpp"
 #include "render/description.hpp"
 #include "scenes/camera_motion.hpp"
 #include "scenes/camera_path.hpp"

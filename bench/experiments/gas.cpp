@@ -75,18 +75,18 @@ double kolmogorov_smirnov(std::vector<double> samples, const Distribution& below
     return std::sqrt(n) * most;
 }
 
-/// The impulse of the walls on the spheres [N s]: what a blow of which a wall is part changes of a
-/// sphere's momentum along the wall's normal. Of another sphere that hits it in the same step the
+/// The impulse of the walls on the spheres [N s]: what an impact of which a wall is part changes of
+/// a sphere's momentum along the wall's normal. Of another sphere that hits it in the same step the
 /// mean is nothing.
 class WallImpulse : public StageObserver {
   public:
     void begin(Stage stage, std::size_t, const Simulation& simulation,
                const StepData& step) override {
-        if (stage != Stage::kSolveBlows) return;
+        if (stage != Stage::kSolveImpacts) return;
         simulation_ = &simulation, step_ = &step, before_ = step.velocity;
     }
     void end(Stage stage) override {
-        if (stage != Stage::kSolveBlows) return;
+        if (stage != Stage::kSolveImpacts) return;
         for (std::size_t i = 0; i < step_->contacts.size(); ++i) {
             const Contact c = step_->contacts[i];
             if (c.a >= kWalls || !step_->hit[i]) continue;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/peers/scene.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/step/settings.hpp"
 
 namespace tesserae::bench {
 
@@ -50,7 +50,7 @@ struct StageTimes {
     double build_islands = 0;
     double make_rows = 0;  ///< solve_islands without its iterations
     double iterate = 0;    ///< its iterations
-    double others = 0;     ///< motion, recalling impulses, the end of the step
+    double others = 0;     ///< motion, the warm start, the end of the step
 };
 StageTimes stage_times(PeerEngine& tesserae);
 

@@ -4,7 +4,7 @@
 #include "bench/bodies.hpp"
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/stages/stage_copy.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 
@@ -80,7 +80,7 @@ class InTesserae : public PeerEngine {
         times.make_rows = without_iterations.seconds.at(Stage::kSolveIslands);
         times.iterate = of.at(Stage::kSolveIslands) - times.make_rows;
         for (const Stage other :
-             {Stage::kAdvanceFirstHalf, Stage::kSolveBlows, Stage::kIntegrateVelocities,
+             {Stage::kAdvanceFirstHalf, Stage::kSolveImpacts, Stage::kIntegrateVelocities,
               Stage::kAdvanceSecondHalf, Stage::kDropCorrections, Stage::kFinishStep})
             times.others += of.at(other);
         return times;

@@ -12,7 +12,7 @@
 
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/step/settings.hpp"
 
 namespace tesserae::bench {
 namespace {

@@ -65,13 +65,13 @@ struct Corners {
     /// The edges that have a part inside and a part outside, as far as their ends tell: bit 8 k +
     /// start for the edge along axis k from that corner.
     unsigned crossing_edges() const {
-        static constexpr unsigned kStarts[3] = {0x55, 0x33, 0x0f};
+        static constexpr unsigned kFirstCorners[3] = {0x55, 0x33, 0x0f};
         unsigned edges = 0;
         for (int k = 0; k < 3; ++k) {
             const int step = 1 << k;
             unsigned none = inside & inside >> step;
             for (const unsigned beyond : out) none |= beyond & beyond >> step;
-            edges |= (kStarts[k] & ~none) << 8 * k;
+            edges |= (kFirstCorners[k] & ~none) << 8 * k;
         }
         return edges;
     }

@@ -15,9 +15,9 @@ struct Contact {
     double separation = 0;        ///< along the normal [m], negative when overlapping
     BodyId a = 0, b = 0;          ///< a < b
     std::uint32_t feature = 0;    ///< which point of the pair; stays the same while features do
-    /// Known beforehand of the pair: seen from a (bit 0) or b (bit 1) it is no seam, as long as all
-    /// its points, so many, are there.
-    std::uint8_t no_seam = 0, no_seam_points = 0;
+    /// Known beforehand of the pair: seen from a (bit 0) or b (bit 1) it is no internal edge, as
+    /// long as all its points, so many, are there.
+    std::uint8_t no_internal_edge = 0, no_internal_edge_points = 0;
 };
 
 /// Where a shape is: seen, not kept.

@@ -11,7 +11,7 @@ namespace {
 
 /// Separations along a cell's normal that are this part of the size from the largest are it: bodies
 /// that lie on a cell do not lose it by rounding.
-constexpr double kFlush = 1e-11;
+constexpr double kFlushHeight = 1e-11;
 /// A normal with this much of a cell's has more points over that cell (25 degrees), and a piece
 /// that faces it so is one that points of the cell lie over.
 constexpr double kCellPart = 0.9;
@@ -278,14 +278,14 @@ void convex_contacts(const ConvexBody& a, const ConvexBody& b, const ConvexSepar
     thread_local Scratch scratch;
     scratch.clear();
     SurfacePiece &of_a = scratch.a, &of_b = scratch.b;
-    a.piece_along(normal, of_a);
-    b.piece_along(-normal, of_b);
+    a.surface_piece(normal, of_a);
+    b.surface_piece(-normal, of_b);
     // A cell's own normal, where it serves as well.
     const auto try_normal = [&](const SurfacePiece& piece, double sign) {
         if (!piece.is_flat) return false;
         const Vec4 own = sign * piece.plane.normal;
         const double gap = gap_along(a, b, own);
-        if (!(gap >= nearest.distance - kFlush * size)) return false;
+        if (!(gap >= nearest.distance - kFlushHeight * size)) return false;
         normal = own, distance = gap;
         return true;
     };
@@ -306,12 +306,12 @@ void convex_contacts_over_face(const ConvexBody& a, const ConvexBody& b, bool fa
     thread_local Scratch scratch;
     scratch.clear();
     SurfacePiece& cell = face_of_b ? scratch.b : scratch.a;
-    (face_of_b ? b : a).piece_along(outward, cell);
+    (face_of_b ? b : a).surface_piece(outward, cell);
     const Vec4 normal = face_of_b ? Vec4(-cell.plane.normal) : cell.plane.normal;
     if (face_of_b)
-        a.piece_along(normal, scratch.a);
+        a.surface_piece(normal, scratch.a);
     else
-        b.piece_along(-normal, scratch.b);
+        b.surface_piece(-normal, scratch.b);
     PieceContacts points(normal, a.radius, b.radius, size, scratch);
     points.add_over_cell(scratch.b, true, scratch.a);
     points.add_over_cell(scratch.a, false, scratch.b);

@@ -38,7 +38,7 @@ struct ConvexBody {
     Support core;
     double radius;
     /// Puts the piece of the core's surface that looks most along a direction into an empty one.
-    FunctionRef<void(const Vec4& direction, SurfacePiece& piece)> piece_along;
+    FunctionRef<void(const Vec4& direction, SurfacePiece& piece)> surface_piece;
     /// The core's signed distance, and the way out.
     FunctionRef<Level(const Vec4& point)> level;
 };

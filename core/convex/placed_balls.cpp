@@ -135,7 +135,7 @@ class GreatestGap {
         constexpr double kTurned = 1e-9, kOff = 1e-12;
         // Where two bodies' groups are orthogonal to the normal but for as little, the distance's
         // error is the change itself: some steps more, while there is one.
-        constexpr double kStill = 1e-13;
+        constexpr double kConverged = 1e-13;
         constexpr int kMoreSteps = 4;
         normal_ = start;
         of_a_.point.setZero();
@@ -148,7 +148,7 @@ class GreatestGap {
             if (!(turned >= 0)) return false;
             last_ = std::max(turned, off_);
             if (mu <= kLeastMu && turned < kTurned && off_ < kOff) {
-                for (int more = 0; more < kMoreSteps && last_ > kStill; ++more) {
+                for (int more = 0; more < kMoreSteps && last_ > kConverged; ++more) {
                     const double again = take_step(mu);
                     if (!(again >= 0)) return false;
                     last_ = std::max(again, off_);
@@ -157,7 +157,7 @@ class GreatestGap {
             }
             // After a long step groups may be others.
             if (turned > 0.1 && step > 2) mu = std::max(mu, 0.01 * turned);
-            if (turned < kLongestStep) mu = std::max(kLeastMu, kFall * mu);
+            if (turned < kLongestNewtonStep) mu = std::max(kLeastMu, kFall * mu);
         }
         return false;
     }
@@ -166,7 +166,7 @@ class GreatestGap {
     Vec4 point_of_b() const { return of_b_.point; }
 
   private:
-    static constexpr double kLongestStep = 0.5;
+    static constexpr double kLongestNewtonStep = 0.5;
 
     /// The equations: point_a + point_b + distance normal = between, |normal| = 1. Returns by how
     /// much the normal turned; negative: they are singular.
@@ -182,7 +182,7 @@ class GreatestGap {
             is_solved = solve(bend, -distance_, rest, change);
         if (!is_solved) return -1;
         const double turned = change.norm();
-        if (turned > kLongestStep) change *= kLongestStep / turned;
+        if (turned > kLongestNewtonStep) change *= kLongestNewtonStep / turned;
         of_a_.move(a_, change);
         of_b_.move(b_, turn_.transpose() * change);
         normal_ = (normal_ + change).normalized();

@@ -18,8 +18,8 @@ constexpr double kSlop = 0.005;
 constexpr double kFlush = 1e-4;
 
 /// Contacts all of whose points lie this near to a rim of the other body's face, as a part of the
-/// same, are looked at for a seam, usual 0.1. Less than what a heavy load sinks in, and its body is
-/// stopped there; more, and the look costs more.
+/// same, are looked at for an internal edge, usual 0.1. Less than what a heavy load sinks in, and
+/// its body is stopped there; more, and the look costs more.
 constexpr double kSkin = 0.1;
 
 /// Overlap that is left to the solver, as a part of twice the least half-size of two bodies, usual
@@ -47,18 +47,18 @@ constexpr double kRestingGap = 0.02;
 constexpr double kKeptMargin = 2;
 
 /// Part of an overlap that a sub-step removes (f in the bias -(f/h) min(0, s +
-/// a)), and by which its push moves bodies, see is_pushed(); usual 0.2 where there is no push.
+/// a)), and by which a position correction moves bodies, see is_corrected(); usual 0.2 without one.
 /// Towards 1 stacks jump and bodies that start inside each other are thrown apart, towards 0 a wall
-/// of 20 rows topples at 10 sweeps. Without a push it trembles, by 8 to 17 mm/s at 20 sweeps
+/// of 20 rows topples at 10 sweeps. Without a correction it trembles, by 8 to 17 mm/s at 20 sweeps
 /// instead of 2.
 constexpr double kBiasPart = 0.05;
 
-/// Overlap up to which it does where a push follows, beyond what is left alone, in the slop of the
-/// pair, usual 0.25: what moves apart by it goes on to. More, and a row that a heavy body has
-/// pressed together before a wall throws it back (one of 20 masses by 6 % of its speed at 1, by 36
-/// % without a bound); less, and a box on one of a hundredth of its mass trembles (at 0.1 by 20
-/// mm/s).
-constexpr double kPushedBias = 0.25;
+/// Overlap up to which it does where a position correction follows, beyond what is left alone, in
+/// the slop of the pair, usual 0.25: what moves apart by it goes on to. More, and a row that a
+/// heavy body has pressed together before a wall throws it back (one of 20 masses by 6 % of its
+/// speed at 1, by 36 % without a bound); less, and a box on one of a hundredth of its mass trembles
+/// (at 0.1 by 20 mm/s).
+constexpr double kCorrectedBias = 0.25;
 
 /// Load of a pair at which it does no more, in the weight of its island, usual 2: only what cannot
 /// part is pressed together by so much. At 1.2 to 4 logs that are too thick for the walls between
@@ -66,47 +66,47 @@ constexpr double kPushedBias = 0.25;
 /// of its island would do nothing.
 constexpr double kPartedWeight = 2;
 
-/// Sweeps of a push, at most: with 2, 4 and 8 a wall of 20 rows rests alike. More cost more while
-/// anything overlaps.
-constexpr int kPushSweeps = 2;
+/// Sweeps of a position correction, at most: with 2, 4 and 8 a wall of 20 rows rests alike. More
+/// cost more while anything overlaps.
+constexpr int kCorrectionSweeps = 2;
 
 /// The same of islands of few contacts: the first over these, usual 20000, and no more than the
 /// second, usual 32. Fewer, and what lies under a heavy body is pushed out of one overlap into the
 /// other, deeper and deeper (with 8 a plank under 10 masses sinks into the rim that it lies on by a
 /// quarter of its size, with 16 not), and what is in a narrow wedge goes deeper into it; more only
 /// cost more.
-constexpr std::size_t kPushWork = 20000, kMostPushSweeps = 32;
+constexpr std::size_t kCorrectionWork = 20000, kMostCorrectionSweeps = 32;
 
-/// A push turns no body that would give back more than so many times the energy that it was given,
-/// usual 4, if that is more than this part of what it turns with, usual 1e-4. More, and thin bodies
-/// are thrown (without bounds one of 209 heaps wins 8 % of its energy); less of the second, and
-/// what spins fast sinks in.
+/// A position correction turns no body that would give back more than so many times the energy that
+/// it was given, usual 4, if that is more than this part of what it turns with, usual 1e-4. More,
+/// and thin bodies are thrown (without bounds one of 209 heaps wins 8 % of its energy); less of the
+/// second, and what spins fast sinks in.
 constexpr double kGivenBack = 4, kGivenBackOfTurning = 1e-4;
 
 /// Speed at which overlapping bodies are moved apart, at most, in least half-sizes a second (and
 /// what gravity adds in a sub-step): so that those that start deep inside each other do not
 /// explode. Less, and a heavy load sinks in.
-constexpr double kLargestPush = 4;
+constexpr double kFastestCorrection = 4;
 
 /// Approach speed above which bodies hit each other, as a multiple of what gravity adds in a
 /// sub-step: slower bounces would last fewer than 8 sub-steps. Lower, resting bodies rattle;
 /// higher, bouncing ends too soon. Without gravity every approach bounces, and at restitution 0 one
-/// is a blow from kStill on.
+/// is an impact from kStill on.
 constexpr double kRestitutionKicks = 4;
 
-/// A blow of a small island is solved until no normal velocity changes by more than this part of
+/// An impact of a small island is solved until no normal velocity changes by more than this part of
 /// its fastest approach in a sweep. More, and a box that is hit flat leaves turning.
-constexpr double kBlowResidual = 1e-4;
+constexpr double kImpactResidual = 1e-4;
 
 /// Sweeps of it at most: this over the island's contacts, but not fewer than `iterations`. Fewer,
 /// and a body that hits much lighter ones is thrown back (a ball of 100 masses that hits one before
 /// a wall needs 1000 sweeps); more, and boxes that settle cost several times as much.
-constexpr std::size_t kBlowWork = 10000;
+constexpr std::size_t kImpactWork = 10000;
 
-/// Islands of so many contacts solve a blow among the contacts near it: of bodies that touch what
-/// is hit, those that touch these, and so on, this often. One more, and there are three times as
-/// many; one less, and in a pile of spheres a fourth of them, not 2 %, reach out of there, and all
-/// is solved again.
+/// Islands of so many contacts solve an impact among the contacts near it: of bodies that touch
+/// what is hit, those that touch these, and so on, this often. One more, and there are three times
+/// as many; one less, and in a pile of spheres a fourth of them, not 2 %, reach out of there, and
+/// all is solved again.
 constexpr std::uint32_t kPatchedFrom = 1024;
 constexpr int kPatchWidth = 2;
 /// What such a contact costs, in contacts of a whole island: where all of them cost more than it
@@ -116,7 +116,7 @@ constexpr std::size_t kPatchCost = 64;
 
 /// The part for a large island, whose sweeps are `iterations` at most. Less, and large heaps cost
 /// more while they settle, as something hits something in every step.
-constexpr double kLargeBlowResidual = 1e-3;
+constexpr double kLargeImpactResidual = 1e-3;
 
 /// Sweeps of the compression of a large island from which bodies bounce, at most, while they go
 /// along conjugate directions: with 10 a plate of 300 masses that falls on 8 of a bed of 648 is
@@ -158,18 +158,18 @@ constexpr double kHardlyAnything = 0.1;
 /// How many times the energy of what gravity does to an island's bodies in a sub-step the impulses
 /// may give them that their load starts from, usual 1000, before the part of these is looked for
 /// that takes the most energy. Less, and what lands loses loads that it needs (at 2 a tower of 40
-/// boxes that start with gaps falls); more, and what ended a blow is replayed (a row of boxes that
-/// one of 20 masses has pressed together before a wall throws it back by 30 % of its speed).
-constexpr double kRecalledWeight = 1000;
+/// boxes that start with gaps falls); more, and what ended an impact is replayed (a row of boxes
+/// that one of 20 masses has pressed together before a wall throws it back by 30 % of its speed).
+constexpr double kWarmStartWeight = 1000;
 
-/// How many times what gravity gives an island in a sub-step it is given by what holds it, as
-/// recalled, when something that has hit it is being stopped, usual 4: where these impulses then
-/// leave more energy than there would be without them, what goes back already is thrown, and the
-/// same part of them is looked for. Less, and logs that are jammed between walls lose the loads
-/// that keep them there (at 2 eight of 64 leave by more than 0.2 m/s that else stay); more, and
-/// what hits light bodies comes back (at 8 one of 1000 masses that falls on a tower of five boxes
-/// by 64 % of its speed instead of 2).
-constexpr double kRecalledStop = 4;
+/// How many times what gravity gives an island in a sub-step what holds it gives it,
+/// by the warm start, when something that has hit it is being stopped, usual 4: where these
+/// impulses then leave more energy than there would be without them, what goes back already is
+/// thrown, and the same part of them is looked for. Less, and logs that are jammed between walls
+/// lose the loads that keep them there (at 2 eight of 64 leave by more than 0.2 m/s that else
+/// stay); more, and what hits light bodies comes back (at 8 one of 1000 masses that falls on a
+/// tower of five boxes by 64 % of its speed instead of 2).
+constexpr double kWarmStartStop = 4;
 
 /// How many times as steep a step along a direction may leave the energy, usual 4: the part of the
 /// last direction that the next one goes on with. More, and what it is conjugate to is no longer

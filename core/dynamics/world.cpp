@@ -5,13 +5,13 @@
 #include <span>
 #include <utility>
 
-#include "core/dynamics/solver/blow.hpp"
-#include "core/dynamics/stages/contacts.hpp"
-#include "core/dynamics/stages/kept_contacts.hpp"
-#include "core/dynamics/stages/motion.hpp"
-#include "core/dynamics/stages/rims.hpp"
-#include "core/dynamics/stages/sleeping.hpp"
-#include "core/dynamics/state/room.hpp"
+#include "core/dynamics/contacts/find_contacts.hpp"
+#include "core/dynamics/contacts/kept_manifolds.hpp"
+#include "core/dynamics/contacts/rims.hpp"
+#include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/motion/sleeping.hpp"
+#include "core/dynamics/solver/impact.hpp"
+#include "core/dynamics/step/room.hpp"
 
 namespace tesserae {
 namespace {
@@ -55,14 +55,14 @@ StepReport World::step(double dt, Schedule& schedule) {
     for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
         advance_first_half(schedule);  // free motion to the middle, where contacts act
         find_pairs(schedule);          // broad phase
-        stop_at_impacts(schedule, Impacts::Half::kFirst);  // nothing passes through
+        stop_fast_bodies(schedule, FastBodies::Half::kFirst);  // nothing passes through
         find_contacts(schedule);  // narrow phase, contacts keyed by feature id
         build_islands();
-        solve_blows(schedule);           // what hits: compression, restitution
+        solve_impacts(schedule);         // what hits: compression, restitution
         integrate_velocities(schedule);  // gravity
         solve_islands(schedule);         // what rests: sequential impulses, warm started
         advance_second_half(schedule);   // rotors projected to unit rotors
-        stop_at_impacts(schedule, Impacts::Half::kSecond);
+        stop_fast_bodies(schedule, FastBodies::Half::kSecond);
         drop_corrections(schedule);  // what only took overlap away is in no velocity
     }
     return finish_step(schedule);
@@ -95,50 +95,64 @@ void World::find_pairs_anew(Schedule& schedule) {
 
 void World::find_contacts(Schedule& schedule) {
     const Observed stage(*this, Stage::kFindContacts, step_.pairs.size());
-    const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
-        schedule.for_each_range(count, grain, work);
-    };
-    const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
-    const auto kept_of = [&](Range pairs) {
-        const std::size_t first = pairs.begin / kPairGrain;
-        const std::size_t end = (pairs.end + kPairGrain - 1) / kPairGrain;
-        return std::span(step_.kept).subspan(first, end - first);
-    };
     step_.drift = drift_of(simulation_, step_);
-    const bool keeps = simulation_.needs.manifolds;
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
-    const auto& last = step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
-    for (bool look = true; look;) {
-        if (keeps) begin_kept(step_, kPairGrain, last, spare_manifolds_);
-        if (keeps) clearances_.begin(simulation_, step_, schedule);
-        step_.contacts.restart();
-        contacts_.for_each_wave(
-            for_each_range, step_.pairs.size(), kPairGrain,
-            [&](Range pairs, std::vector<Contact>& list) {
-                if (keeps)
-                    find_kept_contacts(simulation_, step_, pairs, last, kept_of(pairs),
-                                       spare_manifolds_, clearances_, list);
-                else
-                    tesserae::find_contacts(simulation_, step_, pairs, list);
-            },
-            [&](const auto& lists, double ratio) {
-                step_.contacts.append(for_each_range, lists, ratio);
-            });
-        look = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
-               wake_touched(simulation_, step_);
-        if (look) schedule.choose_pairs(simulation_, step_);
-    }
-    if (keeps) clearances_.end(step_, schedule);
-    if (simulation_.needs.seams) seams_.correct(simulation_, step_, schedule);
-    begin_contacts(simulation_, step_);
-    schedule.for_each_range(step_.contacts.size(), kContactGrain,
-                            [&](Range contacts) { recall_impulses(simulation_, step_, contacts); });
-    if (simulation_.needs.rims) {
-        count_company(simulation_, step_);
-        schedule.for_each_range(step_.contacts.run_count(), kContactGrain,
-                                [&](Range runs) { aim_rims(simulation_, step_, runs); });
-    }
+    do find_manifolds(schedule);
+    while (wake_touched(schedule));
+    if (simulation_.needs.manifolds) clearances_.end(step_, schedule);
+    if (simulation_.needs.internal_edges) internal_edges_.correct(simulation_, step_, schedule);
+    find_warm_starts(schedule);
+    if (simulation_.needs.rims) aim_rims(schedule);
     first_loads_.guess(simulation_, step_, schedule);
+}
+
+/// What the sub-step before this one kept.
+const std::vector<KeptManifolds>& World::last_kept() const {
+    return step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
+}
+
+void World::find_manifolds(Schedule& schedule) {
+    if (simulation_.needs.manifolds) {
+        begin_kept(step_, kPairGrain, last_kept(), spare_manifolds_);
+        clearances_.begin(simulation_, step_, schedule);
+    }
+    step_.contacts.restart();
+    const auto for_each_range = [&](auto... of) { schedule.for_each_range(of...); };
+    const auto find = [&](Range pairs, auto& list) { find_contacts_of(pairs, list); };
+    const auto append = [&](const auto&... of) { step_.contacts.append(for_each_range, of...); };
+    contacts_.for_each_wave(for_each_range, step_.pairs.size(), kPairGrain, find, append);
+}
+
+void World::find_contacts_of(Range pairs, std::vector<Contact>& list) {
+    if (!simulation_.needs.manifolds)
+        return tesserae::find_contacts(simulation_, step_, pairs, list);
+    const std::size_t first = pairs.begin / kPairGrain;
+    const std::size_t end = (pairs.end + kPairGrain - 1) / kPairGrain;
+    find_kept_contacts(simulation_, step_, pairs, last_kept(),
+                       std::span(step_.kept).subspan(first, end - first), spare_manifolds_,
+                       clearances_, list);
+}
+
+/// @return whether any body woke: then there are other pairs
+bool World::wake_touched(Schedule& schedule) {
+    const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
+    const bool wakes = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
+                       tesserae::wake_touched(simulation_, step_);
+    if (wakes) schedule.choose_pairs(simulation_, step_);
+    return wakes;
+}
+
+void World::find_warm_starts(Schedule& schedule) {
+    begin_contacts(simulation_, step_);
+    schedule.for_each_range(step_.contacts.size(), kContactGrain, [&](Range contacts) {
+        tesserae::find_warm_starts(simulation_, step_, contacts);
+    });
+}
+
+void World::aim_rims(Schedule& schedule) {
+    count_company(simulation_, step_);
+    const auto aim = [&](Range runs) { tesserae::aim_rims(simulation_, step_, runs); };
+    schedule.for_each_range(step_.contacts.run_count(), kContactGrain, aim);
 }
 
 void World::build_islands() {
@@ -147,19 +161,19 @@ void World::build_islands() {
     step_.rows_in_use = true;
 }
 
-void World::solve_blows(Schedule& schedule) {
-    const Observed stage(*this, Stage::kSolveBlows, step_.islands.size());
+void World::solve_impacts(Schedule& schedule) {
+    const Observed stage(*this, Stage::kSolveImpacts, step_.islands.size());
     const std::size_t count = step_.contacts.size();
     hits_.resize(count / kContactGrain + 1);
     for (std::vector<std::uint32_t>& list : hits_) list.clear();
     schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
-        list_blows(simulation_, step_, contacts, hits_[contacts.begin / kContactGrain]);
+        list_impacts(simulation_, step_, contacts, hits_[contacts.begin / kContactGrain]);
     });
     if (std::all_of(hits_.begin(), hits_.end(), [](const auto& list) { return list.empty(); }))
         return;
-    blow_patches_.begin(simulation_, step_, hits_);
-    schedule.solve_blows(simulation_, step_);
-    if (blow_patches_.end(simulation_, step_)) schedule.solve_blows(simulation_, step_);
+    impact_patches_.begin(simulation_, step_, hits_);
+    schedule.solve_impacts(simulation_, step_);
+    if (impact_patches_.end(simulation_, step_)) schedule.solve_impacts(simulation_, step_);
 }
 
 void World::integrate_velocities(Schedule& schedule) {
@@ -183,17 +197,17 @@ void World::advance_second_half(Schedule& schedule) {
     });
 }
 
-/// What a blow made fast may have come out of the bounds that the pairs were found by.
-void World::stop_at_impacts(Schedule& schedule, Impacts::Half half) {
+/// What an impact made fast may have come out of the bounds that the pairs were found by.
+void World::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
     if (std::find(has_fast_.begin(), has_fast_.end(), 1) == has_fast_.end()) return;
     const std::size_t count = simulation_.bodies.size();
-    const Observed stage(*this, Stage::kStopAtImpacts, step_.pairs.size());
+    const Observed stage(*this, Stage::kStopFastBodies, step_.pairs.size());
     const auto left = [&](Range bodies) { return has_left_bounds(simulation_, step_, bodies); };
-    if (half == Impacts::Half::kSecond) {
+    if (half == FastBodies::Half::kSecond) {
         require_finite(schedule);
         if (schedule.any_range(count, kBodyGrain, left)) find_pairs_anew(schedule);
     }
-    impacts_.stop(simulation_, step_, schedule, half);
+    fast_bodies_.stop(simulation_, step_, schedule, half);
 }
 
 void World::drop_corrections(Schedule& schedule) {

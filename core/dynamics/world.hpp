@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dynamics/stages/blow_patches.hpp"
-#include "core/dynamics/stages/chunked_list.hpp"
-#include "core/dynamics/stages/first_loads.hpp"
-#include "core/dynamics/stages/impacts.hpp"
-#include "core/dynamics/stages/islands.hpp"
-#include "core/dynamics/stages/kept_contacts.hpp"
-#include "core/dynamics/stages/schedule.hpp"
-#include "core/dynamics/stages/seams.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/contacts/chunked_list.hpp"
+#include "core/dynamics/contacts/internal_edges.hpp"
+#include "core/dynamics/contacts/kept_manifolds.hpp"
+#include "core/dynamics/islands/impact_patches.hpp"
+#include "core/dynamics/islands/islands.hpp"
+#include "core/dynamics/motion/fast_bodies.hpp"
+#include "core/dynamics/solver/first_loads.hpp"
+#include "core/dynamics/step/schedule.hpp"
+#include "core/dynamics/step/step.hpp"
 
 namespace tesserae {
 
@@ -48,12 +48,18 @@ class World {
     void find_pairs(Schedule& schedule);
     void find_pairs_anew(Schedule& schedule);
     void find_contacts(Schedule& schedule);
+    void find_manifolds(Schedule& schedule);
+    void find_contacts_of(Range pairs, std::vector<Contact>& list);
+    bool wake_touched(Schedule& schedule);
+    void find_warm_starts(Schedule& schedule);
+    void aim_rims(Schedule& schedule);
+    const std::vector<KeptManifolds>& last_kept() const;
     void build_islands();
-    void solve_blows(Schedule& schedule);
+    void solve_impacts(Schedule& schedule);
     void integrate_velocities(Schedule& schedule);
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
-    void stop_at_impacts(Schedule& schedule, Impacts::Half half);
+    void stop_fast_bodies(Schedule& schedule, FastBodies::Half half);
     void drop_corrections(Schedule& schedule);
     void keep_impulses(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
@@ -65,11 +71,11 @@ class World {
     SpareManifolds spare_manifolds_;
     Clearances clearances_;
     ChunkedList<Contact> contacts_;
-    Seams seams_;
+    InternalEdges internal_edges_;
     FirstLoads first_loads_;
-    BlowPatches blow_patches_;
-    Impacts impacts_;
-    std::vector<std::vector<std::uint32_t>> hits_;  ///< of every range of contacts, the blows
+    ImpactPatches impact_patches_;
+    FastBodies fast_bodies_;
+    std::vector<std::vector<std::uint32_t>> hits_;  ///< of every range of contacts, the impacts
     std::vector<std::uint8_t> has_fast_;            ///< of every range of kBodyGrain bodies
     /// Of every range of contacts, and an end.
     std::vector<KeptImpulses::Size> first_pushing_;

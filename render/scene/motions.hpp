@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 #include "render/picture.hpp"
 
 namespace tesserae::render {

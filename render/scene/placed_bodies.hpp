@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 #include "render/picture.hpp"
 #include "render/scene/motions.hpp"
 

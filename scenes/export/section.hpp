@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 #include "scenes/export/hull_section.hpp"
 #include "scenes/export/round_section.hpp"
 #include "scenes/export/slice_frame.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/algebra/rotor.hpp"
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 
 namespace tesserae::scenes {
 

@@ -7,7 +7,7 @@
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/motion_version.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
 #include "scenes/process/messages.hpp"

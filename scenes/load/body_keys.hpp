@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 #include "core/error.hpp"
 #include "scenes/load/lattice.hpp"
 #include "scenes/load/load_parts.hpp"
@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxBodies = 10'000'000;
 /// Masses [kg] whose inertia and inverse inertia stay inside the range of double for all sizes.
 constexpr double kLeastMass = 1e-60, kLargestMass = 1e60;
 
-// In the order of the enumerations in core/dynamics/state/settings.hpp.
+// In the order of the enumerations in core/dynamics/step/settings.hpp.
 constexpr std::string_view kRotationIntegrators[] = {"euler", "midpoint"};
 constexpr Flag<BodyType> kFixed[] = {{"position", &BodyType::fixed_position},
                                      {"rotation", &BodyType::fixed_rotation}};

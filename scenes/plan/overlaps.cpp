@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/contact/find_contacts.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "parallel/sort_and_sweep.hpp"
 
 namespace tesserae::scenes {

@@ -5,8 +5,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/dynamics/stages/islands.hpp"
-#include "core/dynamics/state/needs.hpp"
+#include "core/dynamics/bodies/needs.hpp"
+#include "core/dynamics/islands/islands.hpp"
 #include "core/error.hpp"
 #include "render/file/preview.hpp"
 #include "render/picture_needs.hpp"
@@ -78,7 +78,7 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                 "no rolling_friction at contacts with friction of what can turn");
     plan.decide("restitution", needs.restitution, "contacts may rebound",
                 "restitution = 0 everywhere: nothing rebounds");
-    plan.decide("seams", needs.seams, "flush faces of several bodies are gone over as one",
+    plan.decide("seams", needs.internal_edges, "flush faces of several bodies are gone over as one",
                 "no hyperboxes: no body has faces that could be flush");
     plan.decide("islands in colours", fits_floats,
                 fmt::format("islands of {} contacts or more, eight contacts at a time in float; "

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <numeric>
 
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "core/error.hpp"
 #include "parallel/parallel_world.hpp"
 #include "scenes/process/signals.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
-#include "core/dynamics/state/memory.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/step/memory.hpp"
 #include "scenes/named_bodies.hpp"
 
 // Trajectories as HDF5 files after H5MD 1.1 (h5md.nongnu.org), in the default file format. HDF5

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 #include "render/camera/camera.hpp"
 #include "render/description.hpp"
 

@@ -5,9 +5,9 @@
 #include <random>
 #include <string>
 
-#include "core/dynamics/stages/motion.hpp"
-#include "core/dynamics/stages/pairs.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
+#include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "core/dynamics/world.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/islands/islands.hpp"
 #include "core/dynamics/world.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
@@ -71,8 +71,8 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSubsteps) {
     expect_serial_bits(mixed_heap(), substepped(), 100, serial);
 }
 
-/// Boxes, capsules and balls that slide over tiles, several to each seam.
-void expect_serial_bits_on_seams(int steps) {
+/// Boxes, capsules and balls that slide over tiles, several to each internal edge.
+void expect_serial_bits_on_internal_edges(int steps) {
     Bodies bodies;
     BodyType tile = box_type(Vec4::Ones());
     tile.fixed_position = tile.fixed_rotation = true;
@@ -89,9 +89,11 @@ void expect_serial_bits_on_seams(int steps) {
     expect_serial_bits(bodies, {}, steps, serial, {1, 2, 4});
 }
 
-TEST(Seams, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) { expect_serial_bits_on_seams(40); }
-TEST(SeamsSlow, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
-    expect_serial_bits_on_seams(80);
+TEST(InternalEdges, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
+    expect_serial_bits_on_internal_edges(40);
+}
+TEST(InternalEdgesSlow, HaveTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
+    expect_serial_bits_on_internal_edges(80);
 }
 
 Bodies with_rolling_friction(Bodies bodies) {

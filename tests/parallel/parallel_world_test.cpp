@@ -139,7 +139,7 @@ TEST(ParallelWorld, RefusesWhatTheSerialWorldRefuses) {
 class FastHalves : public StageObserver {
   public:
     void begin(Stage stage, std::size_t, const Simulation&, const StepData&) override {
-        count += stage == Stage::kStopAtImpacts;
+        count += stage == Stage::kStopFastBodies;
     }
     void end(Stage) override {}
     int count = 0;

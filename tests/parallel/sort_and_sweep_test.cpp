@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/dynamics/stages/motion.hpp"
-#include "core/dynamics/stages/pairs.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
+#include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 

@@ -5,7 +5,7 @@
 // kPictureVersion.
 #include <gtest/gtest.h>
 
-#include "core/dynamics/stages/islands.hpp"
+#include "core/dynamics/islands/islands.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/generate/generate.hpp"

@@ -1,6 +1,6 @@
 #include "core/dynamics/diagnostics/energy.hpp"
 
-#include "core/dynamics/state/type_properties.hpp"
+#include "core/dynamics/bodies/type_properties.hpp"
 
 namespace tesserae {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/state/bodies.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
 
 namespace tesserae {
 

@@ -1,6 +1,6 @@
 #include "core/dynamics/diagnostics/momentum.hpp"
 
-#include "core/dynamics/state/type_properties.hpp"
+#include "core/dynamics/bodies/type_properties.hpp"
 
 namespace tesserae {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/dynamics/solver/coloured_kernels.hpp"
+#include "core/dynamics/solver/kernels/kernels.hpp"
 
 // A coloured island as its passes see it: bodies and colours.
 namespace tesserae {
@@ -50,25 +50,25 @@ auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
 
 /// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
 void begin_changes(const ColouredStage& stage, Range bodies);
-/// step.blow_motion of the bodies: with the changes of the compression, not added yet.
-void keep_blow_motion(const ColouredStage& stage, Range bodies);
+/// step.impact_motion of the bodies: with the changes of the compression, not added yet.
+void keep_impact_motion(const ColouredStage& stage, Range bodies);
 /// Twice their kinetic energy [J] before the compression and after it, whose changes are not added
 /// yet; see has_jammed().
 std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range bodies);
 /// Adds the changes to the velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
-/// Takes from them what was recalled, see take_recalled().
-void take_recalled_back(const ColouredStage& stage, Range bodies);
+/// Takes from them the warm start, see take_warm_start().
+void take_warm_start_back(const ColouredStage& stage, Range bodies);
 
 /// Of the changes: twice their kinetic energy [J], and a part of them.
 double energy_of_changes(const ColouredStage& stage, Range bodies);
 void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part);
 
-/// Keeps the changes of the load; does not turn bodies of which turns_push() says so; takes back
-/// what the push changed.
-void begin_push(const ColouredStage& stage, Range bodies);
-void end_push(const ColouredStage& stage, Range bodies);
-void take_push_back(const ColouredStage& stage, Range bodies);
+/// Keeps the changes of the load; does not turn bodies of which turns_correction() says so; takes
+/// back what the correction changed.
+void begin_correction(const ColouredStage& stage, Range bodies);
+void end_correction(const ColouredStage& stage, Range bodies);
+void take_correction_back(const ColouredStage& stage, Range bodies);
 
 /// One coloured island and its colours.
 class ColouredIsland {
@@ -79,7 +79,7 @@ class ColouredIsland {
           place_(step.islands.coloured[island]),
           stage_{simulation, step, all_.mass_unit[place_]} {}
 
-    /// What follows is for this cause. Rows that a blow has made stay for the load.
+    /// What follows is for this cause. Rows that an impact has made stay for the load.
     void begin(Cause cause) {
         stage_.cause = cause;
         stage_.parting = parting_of(stage_.step, number_);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "core/dynamics/solver/coloured_place.hpp"
-#include "core/dynamics/solver/contact_row.hpp"
-#include "core/dynamics/solver/rolling_row.hpp"
-#include "core/dynamics/state/type_properties.hpp"
+#include "core/dynamics/bodies/type_properties.hpp"
+#include "core/dynamics/constraints/contact_row.hpp"
+#include "core/dynamics/constraints/rolling_row.hpp"
+#include "core/dynamics/solver/kernels/place.hpp"
 
 namespace tesserae {
 namespace {
@@ -182,7 +182,7 @@ bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
     return !needs.rolling || rolling_arm_of(simulation, a, b) == 0;
 }
 
-BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
+BodySums weigh_warm_start(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     Double4 twice_energy{};
     double fallen = 0;
@@ -203,18 +203,18 @@ BodySums weigh_recalled(const ColouredStage& stage, Range bodies) {
     return {0.5 * total_of(twice_energy), fallen};
 }
 
-void begin_recalled_round(const ColouredStage& stage, BatchRange batches) {
+void begin_warm_start_round(const ColouredStage& stage, BatchRange batches) {
     visit_round(stage.step.coloured, batches, begin_at_none);
 }
 
-void begin_recalled_general(const ColouredStage& stage, BatchRange batches) {
+void begin_warm_start_general(const ColouredStage& stage, BatchRange batches) {
     visit_general(stage.step.coloured, batches, begin_at_none);
 }
 
-void take_recalled(const ColouredStage& stage, Range bodies) {
+void take_warm_start(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        store(load(coloured.changes[i]), coloured.recalled[i]);
+        store(load(coloured.changes[i]), coloured.warm_start[i]);
         store(Twelve{}, coloured.changes[i]);
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/solver/coloured_kernels.hpp"
+#include "core/dynamics/solver/kernels/kernels.hpp"
 
 namespace tesserae {
 
@@ -20,8 +20,9 @@ namespace tesserae {
 // With r the gradient's opposite, b = r.z/(r.z)_last and a = r.p/p.Ap. p.Ap is twice the kinetic
 // energy of what p does to the bodies; -r.p is what p does to them times the momentum of what x has
 // done, and p times the rows' velocities at the start, less their targets. The start is where the
-// recalled impulses have acted: what they and gravity do is much more than what is left to solve,
-// and the rounding of so much would be what slopes are made of (a wall then sways by 4 mm/s).
+// warm start's impulses have acted: what they and gravity do is much more than what is left to
+// solve, and the rounding of so much would be what slopes are made of (a wall then sways by 4
+// mm/s).
 
 /// Whether the load of an island goes along conjugate directions if all of its pairs are such:
 /// friction is not so strong that what a sweep changes may grow, see kMostConjugateFriction, and
@@ -31,15 +32,15 @@ bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 
 /// The energies of what the impulses that the load starts from have changed, and of what gravity
 /// has.
-BodySums weigh_recalled(const ColouredStage& stage, Range bodies);
+BodySums weigh_warm_start(const ColouredStage& stage, Range bodies);
 /// Before the rows' work on that is weighed, as that of a step from no impulses.
-void begin_recalled_round(const ColouredStage& stage, BatchRange batches);
-void begin_recalled_general(const ColouredStage& stage, BatchRange batches);
+void begin_warm_start_round(const ColouredStage& stage, BatchRange batches);
+void begin_warm_start_general(const ColouredStage& stage, BatchRange batches);
 
-/// What is recalled is kept apart and no change any more: what is left is small, and so is its
+/// The warm start is kept apart and no change any more: what is left is small, and so is its
 /// rounding, of which directions would grow. The rows' starts have it first, by
-/// take_recalled_round() and take_recalled_general(), and the velocities, by add_changes().
-void take_recalled(const ColouredStage& stage, Range bodies);
+/// take_warm_start_round() and take_warm_start_general(), and the velocities, by add_changes().
+void take_warm_start(const ColouredStage& stage, Range bodies);
 
 /// What the next pair of sweeps goes on from, without a direction: where the last one ended.
 void begin_directions(const ColouredStage& stage, Range bodies);

@@ -19,15 +19,15 @@ class ConjugateDirections {
         : island_(island), threads_(threads) {
         const ColouredStage& stage = island.stage();
         double weight = 0;
-        for (const BodySums& piece : sums_of([](auto... of) { return weigh_recalled(of...); }))
-            recalled_ += piece[0], weight += piece[1];
-        if (recalled_ > LoadWork::least_of_stop(weight)) leave_part_of_recalled(weight);
-        rounding_ = kFloatStep * kFloatStep * recalled_;
+        for (const BodySums& piece : sums_of([](auto... of) { return weigh_warm_start(of...); }))
+            warm_start_ += piece[0], weight += piece[1];
+        if (warm_start_ > LoadWork::least_of_stop(weight)) leave_part_of_warm_start(weight);
+        rounding_ = kFloatStep * kFloatStep * warm_start_;
         for_all_rows(
-            island, threads, [&](BatchRange some) { take_recalled_round(stage, some); },
-            [&](BatchRange some) { take_recalled_general(stage, some); });
+            island, threads, [&](BatchRange some) { take_warm_start_round(stage, some); },
+            [&](BatchRange some) { take_warm_start_general(stage, some); });
         for_bodies([](auto... of) { add_changes(of...); });
-        for_bodies([](auto... of) { take_recalled(of...); });
+        for_bodies([](auto... of) { take_warm_start(of...); });
         for_bodies([](auto... of) { begin_directions(of...); });
     }
     /// The direction after a pair of sweeps.
@@ -64,11 +64,11 @@ class ConjugateDirections {
         for_bodies([](auto... of) { begin_directions(of...); });
     }
 
-    /// After the last pair: whether all impulses, recalled ones too, leave more energy than none.
-    bool is_gain() const { return weigh()[2] + work()[1] - recalled_ > 0; }
-    /// From what is recalled to no impulses.
+    /// After the last pair: whether all impulses, the warm start too, leave more energy than none.
+    bool is_gain() const { return weigh()[2] + work()[1] - warm_start_ > 0; }
+    /// From the warm start to no impulses.
     void take_back() const {
-        for_bodies([](auto... of) { take_recalled_back(of...); });
+        for_bodies([](auto... of) { take_warm_start_back(of...); });
     }
 
     // The rows' part of a pair, batch by batch as they are swept, while they are in the caches.
@@ -99,31 +99,31 @@ class ConjugateDirections {
     }
 
   private:
-    /// What is changed by less than this part of what is recalled, or has been changed, is
+    /// What is changed by less than this part of the warm start, or has been changed, is
     /// rounding, of which directions would grow.
     static constexpr double kFloatStep = 1e-6;
 
-    /// Loads that are more than weights may be none: what ended a blow, and would be replayed. The
-    /// part of them that is left is the one that takes the most energy.
-    /// @param weight   see weigh_recalled()
-    void leave_part_of_recalled(double weight) {
+    /// Loads that are more than weights may be none: what ended an impact, and would be replayed.
+    /// The part of them that is left is the one that takes the most energy.
+    /// @param weight   see weigh_warm_start()
+    void leave_part_of_warm_start(double weight) {
         const ColouredStage& stage = island_.stage();
         for_all_rows(
             island_, threads_,
             [&](BatchRange some) {
-                begin_recalled_round(stage, some);
+                begin_warm_start_round(stage, some);
                 weigh_round_step(stage, some);
             },
             [&](BatchRange some) {
-                begin_recalled_general(stage, some);
+                begin_warm_start_general(stage, some);
                 weigh_general_step(stage, some);
             });
-        const LoadWork load = {-work()[0], 2 * recalled_};
+        const LoadWork load = {-work()[0], 2 * warm_start_};
         const bool stopped = is_stopped(stage.simulation, stage.step, island_.number());
         if (!load.is_too_much(weight, stopped)) return;
         const double part = load.best_part();
         leave_part_of_load(island_, threads_, part);
-        recalled_ *= part * part;
+        warm_start_ *= part * part;
     }
     /// Of a pair: the bodies' part of r.z, r.p_last and the energy.
     BodySums weigh() const {
@@ -173,7 +173,7 @@ class ConjugateDirections {
 
     const ColouredIsland& island_;
     const Threads& threads_;
-    double recalled_ = 0;                ///< energy of what has been taken, see weigh_recalled()
+    double warm_start_ = 0;              ///< energy of what has been taken, see weigh_warm_start()
     double slope_ = 0, last_slope_ = 0;  ///< r.z
     double of_direction_ = 0;            ///< the rows' part of r.p
     double last_energy_ = 0;             ///< at the end of the last pair

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/dynamics/solver/contact_row.hpp"
-#include "core/dynamics/solver/rolling_row.hpp"
+#include "core/dynamics/constraints/contact_row.hpp"
+#include "core/dynamics/constraints/rolling_row.hpp"
 #include "core/dynamics/solver/solve_island.hpp"
 
 namespace tesserae {
@@ -80,14 +80,14 @@ double velocity_left(const ContactRow& row, const RowChange& change) {
 
 }  // namespace
 
-Blow PlainRows::blow() const {
-    return blow_of_runs(simulation_, step_, step_.islands.runs_in(island_));
+Impact PlainRows::impact() const {
+    return impact_of_runs(simulation_, step_, step_.islands.runs_in(island_));
 }
 
-Effort PlainRows::effort_of(const Blow& blow) const {
+Effort PlainRows::effort_of(const Impact& impact) const {
     return step_.awaits[island_] == Awaits::kPatch
-               ? effort_of_patch(simulation_, rows().size(), blow.fastest)
-               : effort_of_blow(simulation_, rows().size(), blow.fastest);
+               ? effort_of_patch(simulation_, rows().size(), impact.fastest)
+               : effort_of_impact(simulation_, rows().size(), impact.fastest);
 }
 
 /// Calls visit(row, contact) for all rows; contact: its place in the list.
@@ -267,9 +267,9 @@ std::array<double, 2> PlainRows::energies() const {
     return sums;
 }
 
-void PlainRows::keep_blow_motion() {
+void PlainRows::keep_impact_motion() {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
-        step_.blow_motion[bodies_[i]] = {motions_[i], motion_of(step_, bodies_[i])};
+        step_.impact_motion[bodies_[i]] = {motions_[i], motion_of(step_, bodies_[i])};
 }
 
 RestitutionSums PlainRows::restitution() const {
@@ -282,7 +282,7 @@ void PlainRows::leave_part_of_restitution(double part) {
 
 void PlainRows::keep() {
     for_each_row([&](const ContactRow& row, std::size_t contact) {
-        if (cause_ == Cause::kBlow) {
+        if (cause_ == Cause::kImpact) {
             step_.hit[contact] = row.normal_impulse > 0;
             return;
         }
@@ -292,25 +292,25 @@ void PlainRows::keep() {
     });
 }
 
-void PlainRows::begin_push() { keep_motions(); }
+void PlainRows::begin_correction() { keep_motions(); }
 
-/// Nothing is turned where turns_push() says so of any body.
-void PlainRows::end_push() {
+/// Nothing is turned where turns_correction() says so of any body.
+void PlainRows::end_correction() {
     bool turns = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Bivector& turning = step_.angular_velocity[bodies_[i]];
-        turns |= turns_push(simulation_, step_, bodies_[i], turning,
-                            turning - motions_[i].angular_velocity);
+        turns |= turns_correction(simulation_, step_, bodies_[i], turning,
+                                  turning - motions_[i].angular_velocity);
     }
     if (!turns) return;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
-    step_.pushed[island_] = Push::kStraight;
+    step_.corrected[island_] = Correction::kStraight;
 }
 
 /// From the rows' impulses to those of the load.
-void PlainRows::take_push_back() {
-    const bool straight = step_.pushed[island_] == Push::kStraight;
+void PlainRows::take_correction_back() {
+    const bool straight = step_.corrected[island_] == Correction::kStraight;
     if (straight) keep_motions();
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         const ContactImpulse& load = step_.impulses[contact];

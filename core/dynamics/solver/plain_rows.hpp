@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "core/dynamics/solver/blow.hpp"
+#include "core/dynamics/solver/impact.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
@@ -20,8 +20,8 @@ class PlainRows {
     StepData& step() const { return step_; }
     std::size_t island() const { return island_; }
 
-    Blow blow() const;
-    Effort effort_of(const Blow& blow) const;
+    Impact impact() const;
+    Effort effort_of(const Impact& impact) const;
     void start(Cause cause);
     void leave_friction_out() { friction_ = false; }
     double iterate(Pass pass, const Effort& effort);
@@ -29,14 +29,14 @@ class PlainRows {
     LoadWork load();
     void leave_part(double part);
     std::array<double, 2> energies() const;
-    void keep_blow_motion();
+    void keep_impact_motion();
     void add_changes() {}
     RestitutionSums restitution() const;
     void leave_part_of_restitution(double part);
     void keep();
-    void begin_push();
-    void end_push();
-    void take_push_back();
+    void begin_correction();
+    void end_correction();
+    void take_correction_back();
 
   private:
     std::span<ContactRow> rows() const {
@@ -66,7 +66,7 @@ class PlainRows {
     Cause cause_ = Cause::kLoad;
     bool friction_ = true;
     std::span<const BodyId> bodies_;  ///< the movable ones, each once
-    std::span<BodyMotion> motions_;   ///< theirs, before the rows' impulses or a push
+    std::span<BodyMotion> motions_;   ///< theirs, before the rows' impulses or a correction
 };
 
 }  // namespace tesserae

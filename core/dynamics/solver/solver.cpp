@@ -1,16 +1,16 @@
 #include "core/dynamics/solver/solver.hpp"
 
-#include "core/dynamics/solver/coloured_solver.hpp"
+#include "core/dynamics/solver/coloured_rows.hpp"
 #include "core/dynamics/solver/plain_rows.hpp"
 
 namespace tesserae {
 
-void solve_blow(const Simulation& simulation, StepData& step, std::size_t island) {
+void solve_impact(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.awaits[island] == Awaits::kNothing) return;
     if (step.islands.is_coloured(island))
-        return solve_coloured_blow(simulation, step, island, OneThread{});
+        return solve_coloured_impact(simulation, step, island, OneThread{});
     PlainRows rows(simulation, step, island);
-    solve_blow(rows);
+    solve_impact(rows);
 }
 
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
@@ -22,10 +22,10 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
 }
 
 void drop_correction(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (step.pushed[island] == Push::kNone) return;
+    if (step.corrected[island] == Correction::kNone) return;
     if (step.islands.is_coloured(island))
         return drop_coloured_correction(simulation, step, island, OneThread{});
-    PlainRows(simulation, step, island).take_push_back();
+    PlainRows(simulation, step, island).take_correction_back();
 }
 
 }  // namespace tesserae

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {
 
@@ -8,7 +8,7 @@ namespace tesserae {
 /// the velocities before gravity. First the compression, until no bodies meet, then the restitution
 /// (part_of_restitution()). Its impulses are not kept: what is started from in the next sub-step is
 /// the load alone.
-void solve_blow(const Simulation& simulation, StepData& step, std::size_t island);
+void solve_impact(const Simulation& simulation, StepData& step, std::size_t island);
 
 /// Solves the contacts of one island by sequential impulses, accumulated and clamped, warm
 /// started, in the order that Islands gives: changes the velocities of its movable bodies. Touches

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/dynamics/constraints/contact_row.hpp"
 #include "core/dynamics/solver/block_cholesky.hpp"
-#include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
@@ -49,7 +49,7 @@ struct Along {
     Vec4 axis;
     Part a, b;           ///< what a unit impulse does to the bodies
     double speed;        ///< before any impulse of the load [m/s]
-    double recalled;     ///< the last step's impulse [N s]
+    double warm_start;   ///< the last step's impulse [N s]
     double impulse = 0;  ///< [N s]
 };
 
@@ -63,7 +63,7 @@ struct Point {
     double stiffness;  ///< of what holds it [kg]
 };
 
-/// What recalled impulses give a body.
+/// What warm start's impulses give a body.
 struct Impulse {
     Vec4 straight = Vec4::Zero();  ///< [N s]
     Bivector turning;              ///< [N m s]
@@ -112,7 +112,7 @@ class StaticLoad {
     bool creeps();
     void list_points();
     void solve();
-    /// Whether it takes more energy than what is recalled, whose impulses it then replaces.
+    /// Whether it takes more energy than the warm start, whose impulses it then replaces.
     bool is_better() const;
     void keep() const;
 
@@ -139,7 +139,7 @@ class StaticLoad {
     std::vector<Impulse> given_;
     std::vector<Roots> roots_;
     std::vector<Point> points_;
-    std::vector<Part> motion_, recalled_motion_, next_;
+    std::vector<Part> motion_, warm_motion_, next_;
     BlockCholesky matrix_;
 };
 
@@ -175,7 +175,7 @@ bool StaticLoad::couple() {
 void StaticLoad::reserve() {
     const std::size_t bodies = bodies_.size() + 1;
     roots_.reserve(bodies);
-    motion_.reserve(bodies), recalled_motion_.reserve(bodies), next_.reserve(bodies);
+    motion_.reserve(bodies), warm_motion_.reserve(bodies), next_.reserve(bodies);
     points_.reserve(step_->islands.contacts[island_]);
 }
 
@@ -243,9 +243,9 @@ void StaticLoad::add_point(std::size_t place, const Vec4& at) {
         along.a = -roots_[point.a].of(r_a, along.axis);
         along.b = roots_[point.b].of(r_b, along.axis);
         along.speed = along.axis.dot(i == 0 ? v : slip);
-        along.recalled = i == 0 ? last.normal : along.axis.dot(friction);
-        recalled_motion_[point.a] += along.recalled * along.a;
-        recalled_motion_[point.b] += along.recalled * along.b;
+        along.warm_start = i == 0 ? last.normal : along.axis.dot(friction);
+        warm_motion_[point.a] += along.warm_start * along.a;
+        warm_motion_[point.b] += along.warm_start * along.b;
     }
     const double response = point.along[0].a.squaredNorm() + point.along[0].b.squaredNorm();
     point.stiffness = response > 0 ? kStaticStiffness / response : 0;
@@ -258,7 +258,7 @@ void StaticLoad::list_points() {
     for (const BodyId id : bodies_) roots_.push_back(roots_of(*simulation_, *step_, id));
     roots_.emplace_back();
     motion_.assign(roots_.size(), Part::Zero());
-    recalled_motion_ = motion_;
+    warm_motion_ = motion_;
     points_.clear();
     for (const std::uint32_t n : runs_) {
         const Places places(*step_, run(n), coloured_);
@@ -358,8 +358,8 @@ bool StaticLoad::is_better() const {
     double energy = 0;  // what is given more
     for (const Point& point : points_)
         for (const Along& along : point.along)
-            energy += (along.impulse - along.recalled) *
-                      (speed(point, along, recalled_motion_) + speed(point, along, motion_));
+            energy += (along.impulse - along.warm_start) *
+                      (speed(point, along, warm_motion_) + speed(point, along, motion_));
     return energy < 0;
 }
 

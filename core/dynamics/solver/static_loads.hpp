@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {
 

@@ -4,13 +4,13 @@
 #include <limits>
 
 #include "core/dynamics/constants.hpp"
-#include "core/dynamics/state/step_data.hpp"
+#include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {
 
-/// A blow's compression or a load, a blow's restitution, and what takes overlap away after a load,
-/// by normal impulses alone.
-enum class Pass { kSolve, kRestitution, kPush };
+/// An impact's compression or a load, an impact's restitution, and what takes overlap away after a
+/// load, by normal impulses alone.
+enum class Pass { kSolve, kRestitution, kCorrection };
 
 /// How long a pass goes on: until a sweep's residual is at most `enough`, at most so many.
 struct Effort {
@@ -63,42 +63,43 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
     return effort;
 }
 /// Of what takes overlap away, after the load: nothing goes on with it.
-inline Effort effort_of_push(const Simulation& simulation, std::size_t contacts) {
+inline Effort effort_of_correction(const Simulation& simulation, std::size_t contacts) {
     const PhysicsSettings& settings = simulation.settings;
-    Effort effort{std::min(settings.iterations, kPushSweeps)};
+    Effort effort{std::min(settings.iterations, kCorrectionSweeps)};
     if (!may_take_more(settings)) return effort;
-    effort.sweeps = std::max(effort.sweeps, sweeps_of_few(kPushWork, contacts, kMostPushSweeps));
+    effort.sweeps =
+        std::max(effort.sweeps, sweeps_of_few(kCorrectionWork, contacts, kMostCorrectionSweeps));
     effort.enough = settings.tolerance, effort.every = 2;
     return effort;
 }
-/// Of a blow: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
-/// @param fastest   see Blow
-inline Effort effort_of_blow(const Simulation& simulation, std::size_t contacts, double fastest) {
-    const auto sweeps = static_cast<int>(kBlowWork / contacts);
-    return {std::max(simulation.settings.iterations, sweeps), kBlowResidual * fastest, 4};
+/// Of an impact: nothing goes on with it, and a heavy body that hits light ones needs many sweeps.
+/// @param fastest   see Impact
+inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double fastest) {
+    const auto sweeps = static_cast<int>(kImpactWork / contacts);
+    return {std::max(simulation.settings.iterations, sweeps), kImpactResidual * fastest, 4};
 }
 /// A fourth of the iterations where there are many contacts: the load takes what is left (with 2 to
 /// 5 of 10 the bodies of a wall of 1000 that a ball has hit are alike as fast as 1500 make them, to
 /// 0.05 m/s rms while it breaks; Bullet's 10 are to 0.11).
-inline Effort effort_of_large_blow(const Simulation& simulation, std::size_t contacts,
-                                   double fastest) {
-    const auto sweeps = static_cast<int>(kBlowWork / contacts);
+inline Effort effort_of_large_impact(const Simulation& simulation, std::size_t contacts,
+                                     double fastest) {
+    const auto sweeps = static_cast<int>(kImpactWork / contacts);
     return {std::max((simulation.settings.iterations + 2) / 4, sweeps),
-            kLargeBlowResidual * fastest, 4};
+            kLargeImpactResidual * fastest, 4};
 }
 /// Of one from which bodies bounce: what they return by less no load makes up for. The compression
 /// is an even number of sweeps, so that conjugate directions are there from the first one on, and
 /// goes further while they lead somewhere.
 inline Effort effort_of_bounce(const Simulation& simulation, std::size_t contacts, double fastest) {
-    const auto sweeps = static_cast<int>(kBlowWork / contacts);
+    const auto sweeps = static_cast<int>(kImpactWork / contacts);
     return {std::max({simulation.settings.iterations, sweeps, 2}) & ~1,
-            kLargeBlowResidual * fastest, 2, kBounceSweeps};
+            kLargeImpactResidual * fastest, 2, kBounceSweeps};
 }
 
-/// Of a blow among the contacts near it, see BlowPatches.
+/// Of an impact among the contacts near it, see ImpactPatches.
 inline Effort effort_of_patch(const Simulation& simulation, std::size_t contacts, double fastest) {
-    Effort effort = effort_of_blow(simulation, contacts, fastest);
-    effort.enough = kLargeBlowResidual * fastest;
+    Effort effort = effort_of_impact(simulation, contacts, fastest);
+    effort.enough = kLargeImpactResidual * fastest;
     return effort;
 }
 
@@ -109,14 +110,14 @@ struct LoadWork {
 
     /// Of energy. Sweeps only lessen it.
     bool is_gain() const { return work + 0.5 * energy > 0; }
-    /// Whether a load does not start from so much: see kRecalledWeight.
+    /// Whether a load does not start from so much: see kWarmStartWeight.
     /// @param energy_of_fall, stopped   energy_of_fall(), is_stopped()
     bool is_too_much(double energy_of_fall, bool stopped) const {
-        return 0.5 * energy > kRecalledWeight * energy_of_fall || (stopped && is_gain());
+        return 0.5 * energy > kWarmStartWeight * energy_of_fall || (stopped && is_gain());
     }
     /// What the energy is at least where is_stopped().
     static double least_of_stop(double energy_of_fall) {
-        return kRecalledStop * kRecalledStop * energy_of_fall;
+        return kWarmStartStop * kWarmStartStop * energy_of_fall;
     }
     /// The part of the impulses that leaves least to do, which is no gain.
     double best_part() const { return std::clamp(-work / energy, 0.0, 1.0); }

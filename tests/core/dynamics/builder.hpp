@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "core/dynamics/state/bodies.hpp"
-#include "core/dynamics/state/memory.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/step/memory.hpp"
+#include "core/dynamics/step/settings.hpp"
 #include "core/dynamics/world.hpp"
 
 namespace tesserae::testing {

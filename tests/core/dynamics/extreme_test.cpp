@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/dynamics/constants.hpp"
+#include "core/dynamics/constraints/contact_row.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/solver/contact_row.hpp"
 #include "core/dynamics/world.hpp"
 #include "core/shape/cubinder.hpp"
 #include "core/shape/spherinder.hpp"
@@ -213,7 +213,7 @@ TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
         }
         // In a row of eight, neighbours part at the largest push of 4 half-sizes a second, 2 m/s:
         // the outer ones at 7/2 of it.
-        EXPECT_LT(fastest, 3.5 * kLargestPush * 0.5);
+        EXPECT_LT(fastest, 3.5 * kFastestCorrection * 0.5);
         for (BodyId a = 0; a < 8; ++a)
             for (BodyId b = a + 1; b < 8; ++b)
                 EXPECT_GT((world.bodies().position[a] - world.bodies().position[b]).norm(),

@@ -75,8 +75,8 @@ TEST(ClosingWall, PushesAtItsOwnSpeedOrThrowsAtTwiceThat) {
             // The wall is 0.5 m from the body: it hits at 1/6 s.
             const double speed = (1 + restitution) * wall_speed;
             const Bodies& after = world.bodies();
-            // The last sweep of the blow changed a normal velocity by so much at most.
-            const double left = 10 * kBlowResidual * wall_speed;
+            // The last sweep of the impact changed a normal velocity by so much at most.
+            const double left = 10 * kImpactResidual * wall_speed;
             EXPECT_LT((after.velocity[1] - Vec4(0, 0, 0, speed)).norm(), left) << restitution;
             EXPECT_LT(norm(after.angular_velocity[1]), left);
             // The velocity changes in the middle of a step, not at the moment of the hit.

@@ -3,7 +3,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/dynamics/stages/stage_copy.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "core/dynamics/world.hpp"
 
 namespace tesserae::testing {

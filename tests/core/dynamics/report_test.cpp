@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/step/step.hpp"
 
 namespace tesserae {
 namespace {

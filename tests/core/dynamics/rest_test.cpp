@@ -299,7 +299,7 @@ TEST(Rest, OfAWallThatDoesNotSway) {
     PhysicsSettings settings;
     settings.tolerance = 0;
     settings.iterations = 40;
-    // Directions made of the rounding of gravity and of what is recalled sway by 1 to 5 mm/s.
+    // Directions made of the rounding of gravity and of the warm start sway by 1 to 5 mm/s.
     EXPECT_LT(sway_of_wall(settings), 1e-4);
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "core/dynamics/stages/stage_copy.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -24,7 +24,7 @@ struct PlanarResponse {
     double tt, tn, nn;  ///< [1/kg]
 };
 
-struct PlanarBlow {
+struct PlanarImpact {
     double t, n;       ///< velocity of the point afterwards [m/s]
     std::string path;  ///< pieces of constant slip: + or -, 0 (sticks), J (jams), | at the turn
 };
@@ -32,47 +32,48 @@ struct PlanarBlow {
 /// The motion is linear in the normal impulse p between the ends of slip, of compression and of
 /// restitution. Friction is against the slip; where that has ended it holds if it can, else slip
 /// goes on the other way.
-PlanarBlow stronge_blow(const PlanarResponse& k, double t, double n, double friction, double e) {
+PlanarImpact stronge_impact(const PlanarResponse& k, double t, double n, double friction,
+                            double e) {
     constexpr double kNever = std::numeric_limits<double>::max();
-    PlanarBlow blow{t, n, ""};
+    PlanarImpact impact{t, n, ""};
     double work = 0, left = 0;
-    for (bool restitution = false; blow.path.size() < 20;) {
-        char piece = blow.t > 0 ? '+' : '-';
-        double q = blow.t > 0 ? -friction : friction;  // friction's part of the normal impulse
-        if (blow.t == 0 && std::abs(k.tn) <= friction * k.tt) {
+    for (bool restitution = false; impact.path.size() < 20;) {
+        char piece = impact.t > 0 ? '+' : '-';
+        double q = impact.t > 0 ? -friction : friction;  // friction's part of the normal impulse
+        if (impact.t == 0 && std::abs(k.tn) <= friction * k.tt) {
             piece = '0', q = -k.tn / k.tt;
-        } else if (blow.t == 0) {
+        } else if (impact.t == 0) {
             piece = k.tn > 0 ? '+' : '-', q = k.tn > 0 ? -friction : friction;
         }
         const double a = piece == '0' ? 0 : k.tt * q + k.tn, b = k.tn * q + k.nn;
-        blow.path += b > 0 ? piece : 'J';
-        const double to_stick = blow.t * a < 0 ? -blow.t / a : kNever;
-        const double root = blow.n * blow.n + 2 * b * left;
-        double to_end = b > 0 ? -blow.n / b : kNever;  // of compression
-        if (restitution) to_end = root >= 0 ? 2 * left / (blow.n + std::sqrt(root)) : kNever;
+        impact.path += b > 0 ? piece : 'J';
+        const double to_stick = impact.t * a < 0 ? -impact.t / a : kNever;
+        const double root = impact.n * impact.n + 2 * b * left;
+        double to_end = b > 0 ? -impact.n / b : kNever;  // of compression
+        if (restitution) to_end = root >= 0 ? 2 * left / (impact.n + std::sqrt(root)) : kNever;
         const double p = std::min(to_stick, to_end);
-        const double done = blow.n * p + 0.5 * b * p * p;
+        const double done = impact.n * p + 0.5 * b * p * p;
         (restitution ? left : work) -= done;
-        blow.t = to_stick <= to_end ? 0 : blow.t + a * p;
-        blow.n += b * p;
+        impact.t = to_stick <= to_end ? 0 : impact.t + a * p;
+        impact.n += b * p;
         if (to_stick < to_end) continue;
         if (restitution) break;
         restitution = true;
-        blow.n = 0, left = e * e * work;
-        blow.path += '|';
+        impact.n = 0, left = e * e * work;
+        impact.path += '|';
     }
-    return blow;
+    return impact;
 }
 
-/// A capsule or ball thrown at a plane, its motion in x and y, and what the blow made of it.
+/// A capsule or ball thrown at a plane, its motion in x and y, and what the impact made of it.
 struct Bounce {
     double friction, e;
     bool round;
     PlanarResponse k;
     Vec4 before, compressed, after;  ///< of the point that hits [m/s]
-    PlanarBlow expected;
+    PlanarImpact expected;
 
-    /// Twice the kinetic energy that a blow can change [J].
+    /// Twice the kinetic energy that an impact can change [J].
     double energy(const Vec4& v) const {
         const double t = v[0], n = v[1];
         return (k.nn * t * t - 2 * k.tn * t * n + k.tt * n * n) / (k.tt * k.nn - k.tn * k.tn);
@@ -105,7 +106,7 @@ void for_each_bounce(const See& see) {
             add(bodies, type, {0, height, 0, 0}, {along, -fall, 0, 0},
                 Bivector{uniform(-8, 8), 0, 0, 0, 0, 0}, exp(Bivector{0.5 * angle, 0, 0, 0, 0, 0}));
         World world(bodies, without_gravity());
-        StageCopy copy(Stage::kIntegrateVelocities);  // the blow is over
+        StageCopy copy(Stage::kIntegrateVelocities);  // the impact is over
         world.observe(&copy);
         world.step(kStep);
         const StepData& step = copy.step;
@@ -121,11 +122,11 @@ void for_each_bounce(const See& see) {
         bounce.before = of_point(bodies.velocity[id], bodies.angular_velocity[id]);
         const double approach = -bounce.before[1];
         if (!(approach > 0.1) || step.contacts[0].separation > 0.9 * approach * kStep) continue;
-        const BodyMotion& compressed = step.blow_motion[id].compressed;
+        const BodyMotion& compressed = step.impact_motion[id].compressed;
         bounce.compressed = of_point(compressed.velocity, compressed.angular_velocity);
         bounce.after = of_point(step.velocity[id], step.angular_velocity[id]);
         bounce.expected =
-            stronge_blow(bounce.k, bounce.before[0], bounce.before[1], bounce.friction, bounce.e);
+            stronge_impact(bounce.k, bounce.before[0], bounce.before[1], bounce.friction, bounce.e);
         see(bounce);
     }
 }
@@ -141,10 +142,10 @@ TEST(Stronge, ClosedFormOfABallIsNewtons) {
     const PlanarResponse k{0.5 + 1.5, 0, 0.5};
     for (const double u : {-7.0, -0.3, 0.4, 5.0})
         for (const double e : {0.1, 0.5, 1.0}) {
-            const PlanarBlow blow = stronge_blow(k, u, -3, 0.3, e);
+            const PlanarImpact impact = stronge_impact(k, u, -3, 0.3, e);
             const double most = 0.3 * (1 + e) * 3 / k.nn * k.tt;
-            EXPECT_NEAR(blow.n, 3 * e, 1e-12);
-            EXPECT_NEAR(blow.t, std::copysign(std::max(0.0, std::abs(u) - most), u), 1e-12);
+            EXPECT_NEAR(impact.n, 3 * e, 1e-12);
+            EXPECT_NEAR(impact.t, std::copysign(std::max(0.0, std::abs(u) - most), u), 1e-12);
         }
 }
 
@@ -167,15 +168,15 @@ TEST(Stronge, ARoughBodyThatSlipsOneWayBouncesAsInTheClosedForm) {
         if (bounce.round || bounce.friction == 0 || !bounce.converges()) return;
         if (path != "+|+" && path != "-|-") return;
         ++bounces;
-        EXPECT_LT(difference(bounce), 1e-4) << bounce.friction;  // kBlowResidual
+        EXPECT_LT(difference(bounce), 1e-4) << bounce.friction;  // kImpactResidual
     });
     EXPECT_GT(bounces, 500);
 }
 
 /// Where slip ends or turns round the end of the compression is found at once, not along the way,
-/// and restitution is Newton's, so that the blow is another one than Stronge's. What holds of all:
-/// the compression stops the point, no more energy comes back than e^2 of what it took, and the
-/// point leaves at e times the speed of its approach at most.
+/// and restitution is Newton's, so that the impact is another one than Stronge's. What holds of
+/// all: the compression stops the point, no more energy comes back than e^2 of what it took, and
+/// the point leaves at e times the speed of its approach at most.
 TEST(Stronge, WhereSlipChangesNoMoreEnergyIsReturned) {
     std::map<std::string, std::array<double, 2>> apart;  // number, sum of the differences
     for_each_bounce([&](const Bounce& bounce) {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/stages/motion.hpp"
+#include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -20,7 +20,8 @@ TEST(Substeps, LeaveBodiesThatStartInsideEachOtherNoMoreThanTheLargestPush) {
         World world(bodies, settings);
         for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
         const Bodies& end = world.bodies();
-        EXPECT_LE((end.velocity[1] - end.velocity[0]).norm(), kLargestPush * 0.5 * (1 + 1e-12));
+        EXPECT_LE((end.velocity[1] - end.velocity[0]).norm(),
+                  kFastestCorrection * 0.5 * (1 + 1e-12));
         EXPECT_GT((end.position[1] - end.position[0]).norm(), 1) << depth;
     }
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSteps = 12, kSubsteps = 2;
 const std::set<std::string> kStagesOfSubstep = {
     "advance_first_half", "find_pairs",          "find_contacts",
-    "build_islands",      "solve_blows",         "integrate_velocities",
+    "build_islands",      "solve_impacts",       "integrate_velocities",
     "solve_islands",      "advance_second_half", "drop_corrections"};
 
 std::vector<std::string> arguments(const Folder& folder, const std::string& trace) {
@@ -55,7 +55,7 @@ TEST(ProgramTrace, HasASpanForEveryStageAndMessagesOfIslandsWithinTheirs) {
         const double begin = event["ts"], duration = event["dur"];
         EXPECT_GE(begin, 0);
         EXPECT_GE(duration, 0);
-        if (name == "solve_blows" || name == "solve_islands" || name == "drop_corrections")
+        if (name == "solve_impacts" || name == "solve_islands" || name == "drop_corrections")
             solving.push_back({begin, begin + duration});
         if (name == parallel::kIslandsSpan) messages.push_back({begin, begin + duration});
     }

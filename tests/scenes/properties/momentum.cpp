@@ -10,13 +10,13 @@
 namespace tesserae::scenes::properties {
 namespace {
 
-/// What acts on all bodies together in a step, but for blows of what contacts do not move.
+/// What acts on all bodies together in a step, but for impacts of what contacts do not move.
 struct Acting {
     Vec4 impulse = Vec4::Zero();  ///< [N s]
     Bivector angular;             ///< of gravity about the origin [N m s]
     double by_gravity = 0;        ///< sum of the lengths of what gravity gives [N s]
     double most = 0;              ///< sum of the lengths of what contacts give [N s]
-    Vec4 of_blows = Vec4::Zero();
+    Vec4 of_impacts = Vec4::Zero();
     Vec4 of_stops = Vec4::Zero();  ///< of fast bodies, which gravity has then for less long
     bool held = false;             ///< something touches what contacts do not move
 };
@@ -33,17 +33,17 @@ class ActingObserver : public StageObserver {
     void begin(Stage stage, std::size_t, const Simulation& simulation,
                const StepData& step) override {
         if (is_stopping_) acting_.of_stops += momentum(simulation, step) - before_;
-        is_stopping_ = stage == Stage::kStopAtImpacts;
+        is_stopping_ = stage == Stage::kStopFastBodies;
         switch (stage) {
-            case Stage::kStopAtImpacts:
+            case Stage::kStopFastBodies:
                 before_ = momentum(simulation, step);
                 break;
-            case Stage::kSolveBlows:
+            case Stage::kSolveImpacts:
                 before_ = momentum(simulation, step);
                 add_gravity(simulation, step);
                 break;
             case Stage::kIntegrateVelocities:
-                acting_.of_blows += momentum(simulation, step) - before_;
+                acting_.of_impacts += momentum(simulation, step) - before_;
                 break;
             case Stage::kAdvanceSecondHalf:
                 add_loads(simulation, step);
@@ -108,8 +108,8 @@ Amounts amounts_of(const Bodies& bodies) {
     return sums;
 }
 
-/// Where nothing is held contacts are solved in double: a blow's impulses, of at most 10^4 contacts
-/// and sweeps, each round by 2^-53.
+/// Where nothing is held contacts are solved in double: an impact's impulses, of at most 10^4
+/// contacts and sweeps, each round by 2^-53.
 constexpr double kInDouble = 1e4 * 0x1p-53;
 /// Else they may be solved in float: of up to 80 sweeps each rounds by 2^-24.
 constexpr double kInFloat = 80 * 0x1p-24;
@@ -133,7 +133,7 @@ std::string fault_of_momentum(const SmallScene& scene, const Change& defect) {
             return fmt::format("step {}: bodies are stopped by {} kg m/s, gravity gives them {}", i,
                                acting.of_stops.norm(), acting.by_gravity);
         if (acting.held) {
-            if (const double off = (left - acting.of_blows).norm(); off > kInFloat * linear)
+            if (const double off = (left - acting.of_impacts).norm(); off > kInFloat * linear)
                 return fmt::format("step {}: {} kg m/s of {} come from nothing", i, off, linear);
             continue;
         }

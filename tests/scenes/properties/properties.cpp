@@ -270,7 +270,7 @@ std::string fault_of_slowing(const SmallScene& scene, const Change& defect) {
     const Start start = start_of(without);
     Motion here(start, defect), there(scaled(start, by), defect);
     const double sub_step = std::min(here.time_step(), there.time_step()) / start.physics.substeps;
-    const double most = least_half_size(here) * sub_step * kLargestPush / (2 * kBiasPart);
+    const double most = least_half_size(here) * sub_step * kFastestCorrection / (2 * kBiasPart);
     for (int i = 1; i <= scene.steps; ++i) {
         here.step();
         there.step();

@@ -30,8 +30,8 @@ std::string fault_of_turning(const SmallScene& scene, const Change& defect = {})
 std::string fault_of_mirroring(const SmallScene& scene, const Change& defect = {});
 
 /// With times twice as long everything takes twice as long, bit for bit. Not so where the law has
-/// times of its own (kLargestPush, kStill, kTimeToSleep): the scene gets restitution and no
-/// sleeping, and is looked at while nothing overlaps so far that kLargestPush limits it.
+/// times of its own (kFastestCorrection, kStill, kTimeToSleep): the scene gets restitution and no
+/// sleeping, and is looked at while nothing overlaps so far that kFastestCorrection limits it.
 std::string fault_of_slowing(const SmallScene& scene, const Change& defect = {});
 
 /// A scene, seen otherwise.

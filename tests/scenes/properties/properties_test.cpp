@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 

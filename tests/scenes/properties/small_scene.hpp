@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/state/bodies.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/step/settings.hpp"
 #include "scenes/load/body_keys.hpp"
 
 namespace tesserae::scenes::properties {

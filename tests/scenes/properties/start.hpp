@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "core/dynamics/state/bodies.hpp"
-#include "core/dynamics/state/memory.hpp"
-#include "core/dynamics/state/settings.hpp"
+#include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/step/memory.hpp"
+#include "core/dynamics/step/settings.hpp"
 #include "core/dynamics/world.hpp"
 #include "tests/scenes/properties/small_scene.hpp"
 

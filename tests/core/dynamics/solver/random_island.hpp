@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <random>
 
-#include "core/dynamics/stages/islands.hpp"
-#include "core/dynamics/stages/motion.hpp"
-#include "core/dynamics/stages/step.hpp"
+#include "core/dynamics/islands/islands.hpp"
+#include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae::testing {

@@ -1,0 +1,103 @@
+#include "core/dynamics/contacts/find_contacts.hpp"
+
+#include <algorithm>
+
+#include "core/contact/find_contacts.hpp"
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/contacts/rims.hpp"
+#include "core/dynamics/step/room.hpp"
+#include "core/error.hpp"
+
+namespace tesserae {
+
+Vec4 drift_of(const Simulation& simulation, const StepData& step) {
+    Vec4 sum = Vec4::Zero();
+    for (BodyId id = 0; id < step.velocity.size(); ++id) {
+        if (!simulation.type_of(id).movable) return Vec4::Zero();
+        sum += step.velocity[id];
+    }
+    return sum / std::max<double>(1, static_cast<double>(step.velocity.size()));
+}
+
+Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
+    const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
+    const Vec4 &v_a = step.velocity[a], &v_b = step.velocity[b];
+    const double relative = (v_b - v_a).norm();
+    const double fastest = std::max((v_a - step.drift).norm(), (v_b - step.drift).norm());
+    double speed = relative;
+    if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
+    if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
+    if (type_a.falls != type_b.falls) speed += step.kick;
+    const double slop = std::min(type_a.slop, type_b.slop), margin = slop + step.h * speed;
+    // What would sink in deeper than this is stopped where it touches.
+    const double most = 2 * kDeepest / kSlop * slop;
+    return {margin, margin + std::clamp(step.h * (fastest - relative), 0.0, most)};
+}
+
+double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
+                        double margin, std::vector<Contact>& list) {
+    const auto [a, b] = pair;
+    const Bodies& bodies = simulation.bodies;
+    const std::size_t first = list.size();
+    const double apart =
+        find_contacts(a, bodies.type_of(a).shape, {step.position[a], step.rotor[a]}, b,
+                      bodies.type_of(b).shape, {step.position[b], step.rotor[b]}, margin, list);
+    if (simulation.needs.rims) add_rim_ahead(simulation, step, pair, first, list);
+    return apart;
+}
+
+void find_contacts(const Simulation& simulation, const StepData& step, Range pairs,
+                   std::vector<Contact>& list) {
+    for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
+        const BodyPair& pair = step.pairs[i];
+        find_contacts_of(simulation, step, pair,
+                         margins_of(simulation, step, pair.a, pair.b).if_one_stops, list);
+    }
+}
+
+void begin_contacts(const Simulation& simulation, StepData& step) {
+    resize_anew(step.impulses, step.contacts.size());
+    if (simulation.needs.rolling) resize_anew(step.angular_impulses, step.contacts.size());
+    resize_anew(step.hit, step.contacts.size());
+    std::fill(step.hit.begin(), step.hit.end(), std::uint8_t{0});
+    step.residual.clear();
+    if (!simulation.needs.rims) return;
+    resize_anew(step.rises, step.contacts.size());
+    resize_anew(step.rim_slips, step.contacts.size());
+}
+
+void find_warm_starts(const Simulation& simulation, StepData& step, Range contacts) {
+    if (contacts.begin == contacts.end) return;
+    const KeptImpulses& last = last_impulses(simulation, step);
+    const std::vector<Bivector>& angular = last_angular_impulses(simulation, step);
+    TSR_ASSERT(!simulation.needs.rolling || angular.size() == last.size());
+    const auto bodies_of = [](const KeptImpulses::Run& run) { return BodyPair{run.a, run.b}; };
+    // As a pair: clang 14 lets no lambda have a structured binding.
+    const auto [a, b] = step.contacts.pair(contacts.begin);
+    const BodyPair first = {a, b};
+    auto old =
+        std::partition_point(last.runs().begin(), last.runs().end(),
+                             [&](const KeptImpulses::Run& run) { return bodies_of(run) < first; });
+    for (std::size_t begin = contacts.begin; begin < contacts.end;) {
+        const ContactList::Run run = step.contacts.run(begin, contacts.end);
+        const BodyPair pair = {run.a, run.b};
+        while (old != last.runs().end() && bodies_of(*old) < pair) ++old;
+        // All of the pair: [place, end).
+        std::size_t place = 0, end = 0;
+        for (auto of = old; of != last.runs().end() && bodies_of(*of) == pair; ++of) {
+            if (of == old) place = of->first;
+            end = last.end_of(static_cast<std::size_t>(of - last.runs().begin()));
+        }
+        for (std::size_t i = run.begin; i < run.end; ++i) {
+            const std::uint32_t feature = step.contacts.feature(i);
+            while (place < end && last.feature(place) < feature) ++place;
+            const bool known = place < end && last.feature(place) == feature;
+            step.impulses[i] = known ? last.impulse(place) : ContactImpulse{};
+            if (simulation.needs.rolling)
+                step.angular_impulses[i] = known ? angular[place] : Bivector{};
+        }
+        begin = run.end;
+    }
+}
+
+}  // namespace tesserae

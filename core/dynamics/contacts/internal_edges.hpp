@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/dynamics/contacts/chunked_list.hpp"
+#include "core/dynamics/contacts/edge_judge.hpp"
+#include "core/dynamics/step/schedule.hpp"
+
+namespace tesserae {
+
+/// The last part of the narrow phase: bodies go over faces that lie in one plane as over one face.
+///
+/// The narrow phase looks at two bodies at a time. A box that has sunk into a tile by a hair meets
+/// the next tile's side with less overlap than its top, a ball is nearer to that tile's edge than
+/// to the plane of its top, and such contacts push along the floor. EdgeJudge sees all that a body
+/// meets; here the bodies are found that it has to look at.
+class InternalEdges {
+  public:
+    /// Corrects step.contacts.
+    void correct(const Simulation& simulation, StepData& step, Schedule& schedule);
+
+  private:
+    template <class Choose>
+    void list_meetings(const StepData& step, Schedule& schedule, const Choose& choose);
+    void replace(StepData& step);
+
+    ChunkedList<Meeting> lists_;
+    std::vector<Meeting> meetings_;        ///< ascending (body, begin)
+    std::vector<std::uint8_t> is_marked_;  ///< of every body: the judge has to look at it
+    EdgeJudge judge_;
+    std::vector<ContactList::Replacement> replacements_;
+};
+
+}  // namespace tesserae

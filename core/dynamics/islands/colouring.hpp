@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/dynamics/step/step_data.hpp"
+
+namespace tesserae {
+
+/// Colours the pairs of bodies of large islands and makes batches of them: no two pairs of a colour
+/// share a movable body, so that any number of threads may solve them at once and get the same
+/// bits.
+class Colouring {
+  public:
+    /// Empties step.coloured.
+    void begin(const Simulation& simulation, StepData& step);
+    /// Adds the island, the next one that is coloured.
+    void add(const Simulation& simulation, StepData& step, std::size_t island);
+    /// Sizes the rows.
+    void end(StepData& step);
+
+  private:
+    /// The contacts of two bodies, which follow each other in StepData::contacts.
+    struct Pair {
+        std::uint32_t contact;  ///< the first
+        std::uint16_t bucket;
+        std::uint8_t points;
+    };
+    void list_pairs(const Simulation& simulation, StepData& step, std::size_t island);
+    void add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
+                  Range contacts);
+    std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
+    int colour_of(std::uint32_t a, std::uint32_t b);
+    BatchRange add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
+                           std::vector<Batch>& batches) const;
+
+    std::vector<std::uint32_t> place_;  ///< of every body in ColouredIslands::bodies, or 0
+    std::vector<std::uint64_t> used_;   ///< colours of each of these so far, a bit each
+    std::vector<Pair> pairs_;           ///< of the island at hand
+    std::vector<std::uint32_t> order_;  ///< of their numbers, by buckets
+    std::vector<std::uint32_t> start_;  ///< of each bucket in it, and an end
+};
+
+}  // namespace tesserae

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/islands/colouring.hpp"
+#include "core/dynamics/step/step_data.hpp"
+
+namespace tesserae {
+
+/// Contacts from which on an island is coloured.
+struct ColouredFrom {
+    std::uint32_t held = kColouredFrom;      ///< where a body touches one that contacts do not move
+    std::uint32_t unequal = 1;               ///< there, if masses differ so much: kUnequalMasses
+    std::uint32_t free = kFreeColouredFrom;  ///< elsewhere
+
+    ColouredFrom() = default;
+    ColouredFrom(std::uint32_t both)
+        : held(both), unequal(both), free(both) {}  // NOLINT: meant to convert
+};
+
+/// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.
+class IslandBuilder {
+  public:
+    /// @param coloured_from   for tests and measurements
+    explicit IslandBuilder(ColouredFrom coloured_from = {}) : coloured_from_(coloured_from) {}
+
+    /// step.islands, and the rows and batches of their contacts from step.contacts, every one of
+    /// which has a movable body.
+    void build(const Simulation& simulation, StepData& step);
+
+  private:
+    ColouredFrom coloured_from_;
+    BodyId root_of(BodyId id);
+    bool is_coloured(const Islands& islands, std::size_t island) const;
+    void sort_by_island(const Simulation& simulation, StepData& step);
+
+    std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
+    std::vector<BodyId> member_;  ///< of every run of contacts: a movable body, then its root
+    std::vector<std::uint32_t> number_;           ///< of the island whose root the body is
+    std::vector<double> least_mass_, most_mass_;  ///< of every island's bodies [kg]
+    Colouring colouring_;
+};
+
+}  // namespace tesserae

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/step/step_data.hpp"
+
+namespace tesserae {
+
+/// A body's free motion over a half of a sub-step, and when it is stopped on its way.
+class FreePath {
+  public:
+    /// The path on which the body has come to where it is now, at the velocities that it has now:
+    /// back along them, since free motion can be reversed (to second order with
+    /// RotationIntegrator::kEuler).
+    FreePath(const Simulation& simulation, const StepData& step, BodyId id);
+
+    /// From this time on [s] it stays where it is.
+    void stop(double time) { stop_ = time; }
+    bool moves(double time) const { return time < stop_; }
+
+    struct State {
+        Vec4 position;
+        Rotor rotor;
+        Bivector angular_velocity;
+    };
+    /// @param time   since the half began [s]
+    State at(double time) const;
+
+    BodyId id() const { return id_; }
+    const Shape& shape() const { return *shape_; }
+    /// The least half-size [m]; infinite if unbounded.
+    double half_size() const { return type_->slop / kSlop; }
+    const Vec4& velocity() const { return velocity_; }
+    /// Turning moves no point of the surface towards another body faster than this [m/s].
+    double spin() const { return spin_; }
+    /// Nor speeds it up by more than this [m/s^2].
+    double swing() const { return swing_; }
+    double duration() const { return duration_; }
+
+  private:
+    void bound_turning();
+
+    BodyId id_;
+    const Shape* shape_;
+    const TypeProperties* type_;
+    RotationIntegrator integrator_;
+    double duration_;
+    double stop_ = std::numeric_limits<double>::infinity();
+    double spin_ = 0, swing_ = 0;
+    Vec4 velocity_;
+    State start_;
+};
+
+/// Whether a body can get so far in half a sub-step, at the speed that it has, that another may
+/// have to be kept from passing through it.
+inline bool is_fast(const Simulation& simulation, const StepData& step, BodyId id) {
+    const TypeProperties& type = simulation.type_of(id);
+    if (!type.bounded) return false;
+    // Every body is asked twice a sub-step: without roots, which few need.
+    const double half = 0.5 * step.h, most = kDeepest / kSlop * type.slop;
+    const double way_squared = half * half * step.velocity[id].squaredNorm();
+    if (!(type.arm > 0)) return way_squared > most * most;
+    const Bivector& omega = step.angular_velocity[id];
+    const double spin_squared = half * half * type.arm * type.arm * dot(omega, omega);
+    if (2 * (way_squared + spin_squared) <= most * most) return false;
+    return std::sqrt(way_squared) + std::sqrt(spin_squared) > most;
+}
+
+constexpr double kNoImpact = std::numeric_limits<double>::infinity();
+
+/// When a body has to be stopped, so that it does not pass through another.
+///
+/// That is where it first touches the other: both are kTouch of twice their least half-size apart,
+/// or overlap so much more than at `from`. Only what would come to overlap by more than kDeepest of
+/// it is stopped: what slides, rolls or spins on another body is not, nor is what hits it slowly.
+/// Conservative advancement (Mirtich 1996) along the normals that the pair's contact function
+/// finds: the gap along a fixed normal is a lower bound of the distance, whatever the shapes.
+/// @param from      time since the half began [s]; both are known not to pass before it
+/// @param scratch   its memory is used
+/// @return [s], from <= t <= duration, or kNoImpact
+double impact_time(const FreePath& a, const FreePath& b, double from,
+                   std::vector<Contact>& scratch);
+
+}  // namespace tesserae

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+
+#include "core/dynamics/solver/kernels/lanes.hpp"
+
+// Contacts as they are put into rows: of each lane, not yet side by side.
+namespace tesserae::lanes {
+
+/// Four floats of each lane, as they are put into rows.
+using Fours = std::array<std::array<float, 4>, kLanes>;
+
+/// What slip_by_turning() is of; where one body's turning counts whatever the other's is, it is
+/// that of both.
+struct EightTurning {
+    Fours a, b;     ///< angular velocities: xy xz xw yz
+    Fours last;     ///< yw zw of a, of b
+    Fours against;  ///< how b moves against a, before gravity
+};
+
+/// A contact of each lane's round bodies. All zero where a lane has none.
+struct alignas(32) EightPoints {
+    Fours normal, r_a, r_b;
+    Fours velocity;  ///< relative, of the start
+    Fours impulse;   ///< the tangent one, to start from
+    Fours along;     ///< targets of both passes, whether there is one (1), normal impulse
+    EightTurning turning;
+};
+
+/// A pair of each lane and its points, of any bodies. All zero where a lane has no pair or point.
+struct alignas(32) EightPairs {
+    struct Points {
+        Fours place;  ///< from the centre
+        Fours impulse, along;
+    };
+    Fours normal;
+    Fours centre_a, centre_b;      ///< from the bodies' centres
+    Fours velocity;                ///< of b against a at the centre, at the start
+    std::array<Eight, 6> turning;  ///< likewise
+    Eight rounding;                ///< see least_response()
+    std::array<Points, kManifoldPoints> points;
+};
+
+template <class F>
+[[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane, const Fours& fours) {
+    std::array<const float*, Lane<F>::count> from;
+    for (std::size_t i = 0; i < from.size(); ++i) from[i] = lane.at(fours, i).data();
+    LaneVec4<F> v;
+    load_four(from, v.c);
+    return v;
+}
+
+}  // namespace tesserae::lanes

@@ -1,0 +1,47 @@
+#include "core/dynamics/step/schedule.hpp"
+
+#include "core/dynamics/contacts/pairs.hpp"
+#include "core/dynamics/solver/solver.hpp"
+
+namespace tesserae {
+
+const char* name_of(Stage stage) {
+    constexpr const char* kNames[] = {
+        "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
+        "solve_impacts",      "integrate_velocities", "solve_islands", "advance_second_half",
+        "drop_corrections",   "stop_fast_bodies",     "finish_step"};
+    return kNames[static_cast<std::size_t>(stage)];
+}
+
+void Schedule::for_each_range(std::size_t count, std::size_t, FunctionRef<void(Range)> work) {
+    work({0, count});
+}
+
+bool Schedule::any_range(std::size_t count, std::size_t, FunctionRef<bool(Range)> test) {
+    return test({0, count});
+}
+
+void Schedule::find_pairs(const Simulation& simulation, StepData& step) {
+    test_all_pairs(simulation, step);
+}
+
+void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
+    test_all_pairs(simulation, step);
+}
+
+void Schedule::solve_impacts(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        solve_impact(simulation, step, island);
+}
+
+void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        solve_island(simulation, step, island);
+}
+
+void Schedule::drop_corrections(const Simulation& simulation, StepData& step) {
+    for (std::size_t island = 0; island < step.islands.size(); ++island)
+        drop_correction(simulation, step, island);
+}
+
+}  // namespace tesserae
