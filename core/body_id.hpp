@@ -4,8 +4,8 @@
 
 namespace tesserae {
 
-/// A body's number: [[body]] tables in file order, then lattices. The order of every list of
-/// bodies.
+/// A BodyId is a body's number. The [[body]] tables come first, in file order, then the lattices.
+/// All lists of bodies have this order.
 using BodyId = std::uint32_t;
 
 }  // namespace tesserae

@@ -7,11 +7,11 @@
 
 namespace tesserae {
 
-/// Sorts items 0 <= i < `items` by key, by counting; those of one key keep their order.
-/// @param keys    how many there are
-/// @param key     key(i) < keys; called twice
-/// @param first   becomes the first place of every key, and an end: one more than keys
-/// @param put     put(i, place) takes the item to its place
+/// Sorts the items 0 <= i < `items` by key, by counting. Items with the same key keep their order.
+/// @param keys    number of keys
+/// @param key     key(i) < keys; called twice for each item
+/// @param first   becomes the first place of every key, and one more entry, the end
+/// @param put     put(i, place) moves item i to its place
 template <class Key, class Index, class Put>
 void counting_sort(std::size_t items, std::size_t keys, const Key& key, std::vector<Index>& first,
                    const Put& put) {

@@ -5,8 +5,9 @@
 
 namespace tesserae {
 
-/// Calls something that lives elsewhere, at the cost of a call through a pointer and without taking
-/// memory: for arguments of virtual functions. Lives no longer than what it was made from.
+/// A FunctionRef calls a function object that lives elsewhere. It takes no memory of its own and
+/// costs a call through a pointer. It serves for arguments of virtual functions. It must not
+/// outlive the object that it was made from.
 template <class Signature>
 class FunctionRef;
 

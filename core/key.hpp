@@ -2,13 +2,14 @@
 
 namespace tesserae {
 
-/// The name of a key of scene files, with what their reference says about it. One without a
-/// sentence does not compile.
+/// A Key is the name of a key of scene files, with the text that their reference has about it. A
+/// key without a sentence does not compile.
 struct Key {
     const char* name;
-    const char* unit;     ///< as in "m/s"; empty: it has none
-    const char* meaning;  ///< a sentence; more may follow
-    /// What holds where the key is absent, in words; null: the value that the reader starts from.
+    const char* unit;     ///< for example "m/s"; empty for none
+    const char* meaning;  ///< one sentence or more
+    /// This says in words what holds if the key is absent. If null, the reference shows the value
+    /// that the reader starts from.
     const char* otherwise = nullptr;
 
     consteval Key(const char* key, const char* in, const char* says,

@@ -4,9 +4,10 @@
 
 namespace tesserae {
 
-/// A rotation of 4D space as an element s + B + p xyzw of the even algebra: v goes to R v R~.
-/// Unit rotors (the group Spin(4)) obey two conditions, s^2 + |B|^2 + p^2 = 1 and 2 s p = B ^ B.
-/// A body's rotor takes body coordinates to world coordinates. R and -R are the same rotation.
+/// A Rotor is a rotation of 4D space, written as an element R = s + B + p xyzw of the even algebra.
+/// It takes a vector v to R v R~. Unit rotors (the group Spin(4)) obey two conditions, s^2 + |B|^2
+/// + p^2 = 1 and 2 s p = B ^ B. A body's rotor takes body coordinates to world coordinates. R and
+/// -R are the same rotation.
 struct Rotor {
     double s = 1;
     Bivector b;
@@ -16,40 +17,45 @@ struct Rotor {
     friend Rotor operator-(const Rotor& r) { return {-r.s, -r.b, -r.p}; }
 };
 
-/// A component of a unit rotor below this is rounding, not a sign: it counts as zero where R and -R
-/// are told apart (in a few products of rotors 1e-15 gathers; 1e-12 rad is far below any picture).
+/// Components of a unit rotor up to this size count as zero where R and -R are told apart, usual
+/// 1e-12: they are rounding and have no sign. Less, and the rounding of a few products (1e-15) may
+/// choose the sign; more, and angles that matter are ignored (1e-12 rad is far below what a picture
+/// shows).
 constexpr double kRotorNoise = 1e-12;
 
-/// Geometric product: the rotation b first, then a.
+/// Returns the geometric product a b, the rotation that turns by b first and then by a.
 Rotor operator*(const Rotor& a, const Rotor& b);
 
-/// R~, the inverse of a unit rotor.
+/// Returns R~, which is the inverse of a unit rotor.
 inline Rotor reverse(const Rotor& r) { return {r.s, -r.b, r.p}; }
 
-/// e^B. A rotation by angle t in the plane xy, turning x toward y, is exp(-t/2 xy): one whose world
-/// angular velocity is omega for a time h is exp(-h/2 omega).
-/// Every B has two invariant planes; the even algebra is a pair of quaternions whose angles are the
+/// Returns e^B. A rotation by an angle t in the plane xy, which turns x toward y, is exp(-t/2 xy).
+/// A rotation at the world angular velocity omega for a time h is exp(-h/2 omega).
+/// Every B has two invariant planes. The even algebra is a pair of quaternions whose angles are the
 /// sum and the difference of the planes' angles, so equal angles (isoclinic) are no special case.
 Rotor exp(const Bivector& b);
 
-/// The B with exp(B) = r for a unit rotor, of least norm among those whose two quaternion angles
-/// lie in [0, pi]. Where an angle is pi its direction is free: a fixed one is taken.
+/// Returns the bivector B with exp(B) = r for a unit rotor r. It is the one of least norm among
+/// those whose two quaternion angles lie in [0, pi]. Where an angle is pi, its direction is free,
+/// and a fixed one is taken.
 Bivector log(const Rotor& r);
 
-/// The log of r or -r, the same rotation: of the shorter way there. At half turns, where two ways
-/// are equally short, of the one whose first component of s, xy, ..., zw, p beyond kRotorNoise is
-/// positive.
+/// Returns the logarithm of the rotation by the shorter way, which is that of r or of -r. At half
+/// turns both ways are equally short. Then the one is taken whose first component of s, xy, ...,
+/// zw, p beyond kRotorNoise is positive.
 Bivector log_of_rotation(const Rotor& r);
 
-/// The unit rotor nearest to a drifted one, on both conditions (rescaling alone mends only one).
-/// Needs a rotor that is not a null element: s, B, p with |s^2 + |B|^2 + p^2| > |2 s p - B ^ B|.
+/// Returns the unit rotor nearest to one that has drifted. It restores both conditions; rescaling
+/// alone restores only one. The rotor must not be a null element: |s^2 + |B|^2 + p^2| > |2 s p - B
+/// ^ B|.
 Rotor projected_to_spin4(const Rotor& r);
 
-/// R v R~ for all four axes: the rotation as an orthogonal matrix of determinant +1.
+/// Returns the rotation v -> R v R~ as an orthogonal matrix of determinant +1.
 Mat4 to_matrix(const Rotor& r);
 
-/// R y R~ for the unit vector y, where a capsule's core points: column 1 of to_matrix(r), without
-/// the others. Inline, since it takes less time than a call that returns a vector in memory.
+/// Returns R y R~ for the unit vector y, the direction of a capsule's core. It is column 1 of
+/// to_matrix(r), without the others. It is inline because a call that returns a vector in memory
+/// takes longer than the computation.
 inline Vec4 y_axis_of(const Rotor& r) {
     // The product of the two quaternions of to_matrix(), one of them as a column.
     const Bivector& b = r.b;
@@ -59,18 +65,18 @@ inline Vec4 y_axis_of(const Rotor& r) {
                      pz * ms - py * mx - ps * mz - px * my, ps * my - pz * mx - py * ms - px * mz);
 }
 
-/// The rotor, up to sign, of an orthogonal matrix of determinant +1. The sign makes the first of
-/// s, xy, ..., zw, p that is beyond kRotorNoise positive.
+/// Returns a rotor of an orthogonal matrix of determinant +1. Its sign makes the first of s, xy,
+/// ..., zw, p that is beyond kRotorNoise positive.
 Rotor to_rotor(const Mat4& rotation);
 
-/// R v R~.
+/// Returns the rotated vector R v R~.
 inline Vec4 rotate(const Rotor& r, const Vec4& v) { return to_matrix(r) * v; }
 
-/// R B R~: what the rotation does to planes.
+/// Returns the rotated bivector R B R~.
 Bivector rotate(const Rotor& r, const Bivector& b);
 
-/// From r0 (t = 0) to r1 (t = 1) at constant angular velocity the shortest way, that of
-/// log_of_rotation(r1 reverse(r0)).
+/// Returns the rotor at t on the shortest way from r0 (t = 0) to r1 (t = 1) at constant angular
+/// velocity. The way is that of log_of_rotation(r1 reverse(r0)).
 Rotor interpolate(const Rotor& r0, const Rotor& r1, double t);
 
 }  // namespace tesserae

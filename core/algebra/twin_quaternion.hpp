@@ -6,18 +6,19 @@
 #include "core/algebra/rotor.hpp"
 #include "core/simd/simd.hpp"
 
-// Bivectors and rotors as pairs of numbers that the same is done to, so that each operation of a
-// CPU does two, or those of two bodies, four. A rotor is two quaternions, a bivector their parts
-// without a scalar (rotor.cpp). Of the second quaternion the negative of that part is taken here:
-// then both multiply alike.
+// This header holds bivectors and rotors as pairs of numbers that undergo the same operations. Each
+// CPU instruction then works on two numbers, or on the four of two bodies. A rotor is two
+// quaternions, and a bivector is their vector parts (rotor.cpp). The vector part of the second
+// quaternion is stored with the opposite sign, so that both multiply alike.
 //
-// All is inlined: in memory, the pairs would have to be put together again from single numbers.
+// All functions are inlined: passed in memory, the pairs would have to be assembled again from
+// single numbers.
 namespace tesserae {
 
 using simd::Double2, simd::Double4;
 
-/// Six numbers in three pairs.
-/// @tparam V   Double2, or Double4: two pairs
+/// Holds three pairs of numbers.
+/// @tparam V   Double2 for one body; Double4 for two, a pair of each
 template <class V>
 struct Pairs {
     V x, y, z;
@@ -34,12 +35,13 @@ struct Pairs {
 };
 using ThreePairs = Pairs<Double2>;
 
-/// A bivector, each plane beside the one orthogonal to it: (xy, zw), (xz, wy), (xw, yz).
+/// DualPlanes is a bivector with each plane beside the orthogonal one: (xy, zw), (xz, wy), (xw,
+/// yz).
 using DualPlanes = ThreePairs;
-/// The vectors of two quaternions, one beside the other.
+/// A TwinVector is the vector parts of two quaternions, side by side.
 using TwinVector = ThreePairs;
 
-/// Two quaternions, scalars and vectors, with x y = z in both.
+/// Holds two quaternions: scalars s and vectors v, with x y = z in both.
 template <class V>
 struct Twins {
     V s;
@@ -47,6 +49,7 @@ struct Twins {
 };
 using TwinQuaternion = Twins<Double2>;
 
+/// Returns each pair with its two numbers exchanged.
 [[gnu::always_inline]] inline Double2 swapped(Double2 a) {
     return __builtin_shufflevector(a, a, 1, 0);
 }
@@ -65,13 +68,13 @@ using TwinQuaternion = Twins<Double2>;
 [[gnu::always_inline]] inline Double4 second_twice(Double4 a) {
     return __builtin_shufflevector(a, a, 1, 1, 3, 3);
 }
-/// In each pair the second number with the other sign.
+/// Returns each pair with the sign of its second number changed.
 [[gnu::always_inline]] inline Double2 second_negated(Double2 a) { return a * Double2{1, -1}; }
 [[gnu::always_inline]] inline Double4 second_negated(Double4 a) {
     return a * Double4{1, -1, 1, -1};
 }
 
-/// Two pairs, and each of them again.
+/// Puts two pairs side by side. first_of() and second_of() return them.
 [[gnu::always_inline]] inline Double4 beside(Double2 a, Double2 b) {
     return __builtin_shufflevector(a, b, 0, 1, 2, 3);
 }
@@ -96,13 +99,13 @@ template <class V>
     return {swapped(a.x), swapped(a.y), swapped(a.z)};
 }
 
-/// Number by number.
+/// Returns the products number by number.
 template <class V>
 [[gnu::always_inline]] inline Pairs<V> scaled(const Pairs<V>& a, const Pairs<V>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// In both numbers of a pair the larger of the magnitudes of all its six.
+/// Returns the largest magnitude of a body's six numbers, in both places of its pair.
 template <class V>
 [[gnu::always_inline]] inline V largest_of_each(const Pairs<V>& a) {
     using simd::larger, simd::magnitude;
@@ -116,7 +119,8 @@ template <class V>
 [[gnu::always_inline]] inline DualPlanes to_dual_planes(const Bivector& b) {
     return {Double2{b.xy, b.zw}, Double2{b.xz, -b.yw}, Double2{b.xw, b.yz}};
 }
-/// Of a diagonal operator, whose entries are of planes without an orientation.
+/// Returns a diagonal operator in the order of DualPlanes. Its entries belong to planes without an
+/// orientation, so no sign changes.
 [[gnu::always_inline]] inline DualPlanes to_dual_planes_unsigned(const Bivector& b) {
     return {Double2{b.xy, b.zw}, Double2{b.xz, b.yw}, Double2{b.xw, b.yz}};
 }
@@ -124,7 +128,7 @@ template <class V>
     return {b.x[0], b.y[0], b.z[0], b.z[1], -b.y[1], b.x[1]};
 }
 
-/// half_commutator() of bivectors.
+/// Returns half_commutator() of two bivectors in the order of DualPlanes.
 template <class V>
 [[gnu::always_inline]] inline Pairs<V> half_commutator(const Pairs<V>& a, const Pairs<V>& b) {
     const Pairs<V> c = swapped(b);
@@ -136,7 +140,8 @@ template <class V>
             component(a.x, a.y, b.x, b.y, c.x, c.y)};
 }
 
-/// A bivector (p, q) as the two vectors p - q and -(p + q), and such vectors as twice the bivector.
+/// Takes a bivector (p, q) to the two vectors p - q and -(p + q). Applied to such vectors it
+/// returns twice the bivector.
 template <class V>
 [[gnu::always_inline]] inline Pairs<V> twin_or_planes(const Pairs<V>& a) {
     const auto turned = [](V p) { return second_negated(first_twice(p)) - second_twice(p); };
@@ -167,13 +172,13 @@ template <class V>
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// q v q~ of unit quaternions.
+/// Returns q v q~ for unit quaternions q.
 template <class V>
 [[gnu::always_inline]] inline Pairs<V> rotate(const Twins<V>& q, const Pairs<V>& v) {
     const Pairs<V> twice = 2 * cross(q.v, v);
     return v + (q.s * twice + cross(q.v, twice));
 }
-/// q~ v q of unit quaternions.
+/// Returns q~ v q for unit quaternions q, the opposite turn to rotate().
 template <class V>
 [[gnu::always_inline]] inline Pairs<V> rotate_back(const Twins<V>& q, const Pairs<V>& v) {
     const Pairs<V> twice = 2 * cross(v, q.v);
@@ -185,7 +190,7 @@ template <class V>
     return {a.s * b.s - dot(a.v, b.v), a.s * b.v + b.s * a.v + cross(a.v, b.v)};
 }
 
-/// What unit quaternions turn the planes xy, xz and xw to.
+/// Returns the planes xy, xz and xw rotated by the unit quaternions q.
 [[gnu::always_inline]] inline std::array<DualPlanes, 3> turned_planes(const TwinQuaternion& q) {
     // Half the matrices of both rotations of three dimensions, column by column.
     const TwinVector x = q.v.x * q.v, y = q.v.y * q.v, z = q.v.z * q.v, s = q.s * q.v;
@@ -193,16 +198,16 @@ template <class V>
     const TwinVector columns[] = {{h - (y.y + z.z), x.y + s.z, x.z - s.y},
                                   {x.y - s.z, h - (x.x + z.z), y.z + s.x},
                                   {x.z + s.y, y.z - s.x, h - (x.x + y.y)}};
-    // Of a plane the second vector is the negative of the first, before they are turned.
+    // Before the turn, the second vector of a plane is the negative of the first.
     const auto plane_of = [](const TwinVector& c) { return twin_or_planes(Double2{1, -1} * c); };
     return {plane_of(columns[0]), plane_of(columns[1]), plane_of(columns[2])};
 }
 
-/// Unit quaternions from ones that are not 0, as projected_to_spin4() does.
+/// Returns the quaternions q, which are not 0, scaled to unit length, as projected_to_spin4() does.
 template <class V>
 [[gnu::always_inline]] inline Twins<V> normalized(const Twins<V>& q) {
     const V square = q.s * q.s + dot(q.v, q.v), excess = square - 1, off = simd::magnitude(excess);
-    // Most have turned little since they were of unit length: the series' next term is below 3e-17.
+    // Most are still nearly of unit length: the next term of the series is below 3e-17.
     V k = 1 - excess * (0.5 - excess * (0.375 - excess * 0.3125));
     const auto little = simd::larger(off, swapped(off)) < 1e-4;
     if (!simd::in_all_lanes(little)) k = little ? k : 1 / simd::square_root(square);

@@ -12,8 +12,9 @@
 #include "core/shape/hyperplane.hpp"
 #include "core/shape/hypersphere.hpp"
 
-// Hulls and products of balls against every shape: the general pair function, but for balls (their
-// centre's distance) and planes (the points of the lowest piece).
+// These functions find the contacts of hulls and products of balls with every shape. They use the
+// general pair function, except for spheres (distance of the centre) and planes (points of the
+// lowest piece).
 namespace tesserae {
 
 void contacts_between(const HullShape& a, const Pose& pose_a, const HullShape& b,
@@ -31,7 +32,7 @@ void contacts_between(const BallProduct& a, const Pose& pose_a, const Hyperbox& 
 void contacts_between(const BallProduct& a, const Pose& pose_a, const Hypercapsule& b,
                       const Pose& pose_b, double margin, PairContacts& out);
 
-/// Those of them that have flat faces, see convex_contacts_over_face().
+/// Finds the points of two bodies over a flat face of one, see convex_contacts_over_face().
 void contacts_over_face(const HullShape& a, const Pose& pose_a, const HullShape& b,
                         const Pose& pose_b, bool face_of_b, const Vec4& outward, double margin,
                         PairContacts& out);
@@ -48,7 +49,7 @@ void contacts_over_face(const BallProduct& a, const Pose& pose_a, const Hyperbox
                         const Pose& pose_b, bool face_of_b, const Vec4& outward, double margin,
                         PairContacts& out);
 
-/// Pairs of which contacts_over_face() is.
+/// IsGeneralPairWithFaces holds for the pairs that contacts_over_face() exists for.
 template <class A, class B>
 concept IsGeneralPairWithFaces = (std::derived_from<A, HullShape> &&
                                   (std::derived_from<B, HullShape> ||
@@ -56,8 +57,9 @@ concept IsGeneralPairWithFaces = (std::derived_from<A, HullShape> &&
                                    std::same_as<B, Hypercapsule>)) ||
                                  (std::derived_from<A, BallProduct> && std::same_as<B, Hyperbox>);
 
-/// The feature of a vertex of one body over a face of the other, as the general pair names it.
-/// @param vertex   as it is named over a plane
+/// Returns the feature that the general pair gives to a vertex of one body over a face of the
+/// other.
+/// @param vertex   the feature of the vertex over a hyperplane
 template <class A, class B>
 requires IsGeneralPairWithFaces<A, B> std::uint32_t feature_over_cell(const A&, const B&,
                                                                       bool face_of_b, const Vec4&,

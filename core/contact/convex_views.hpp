@@ -10,10 +10,11 @@
 #include "core/shape/hyperbox.hpp"
 #include "core/shape/hypercapsule.hpp"
 
-// Shapes as the general pair function sees them: a core in the body's frame, what it is widened by,
-// and the piece of its surface that looks along a direction.
+// This header shows shapes as the general pair function sees them: a core in the body's frame, the
+// radius that widens it, and the piece of its surface that faces a direction.
 namespace tesserae {
 
+/// Returns the radius [m] that widens the core to the shape.
 inline double core_radius(const HullShape&) { return 0; }
 void piece_along(const HullShape& shape, const Vec4& direction, SurfacePiece& piece);
 
@@ -26,16 +27,16 @@ void piece_along(const Hypercapsule& shape, const Vec4& direction, SurfacePiece&
 inline double core_radius(const BallProduct&) { return 0; }
 void piece_along(const BallProduct& shape, const Vec4& direction, SurfacePiece& piece);
 
-/// A point of a surface, named for the contacts that it makes.
+/// A NamedPoint is a point of a surface, with a name for the contacts that it makes.
 struct NamedPoint {
     Vec4 point;
     std::uint16_t name;
 };
-/// Points of the surface that span what looks along a direction: of every ball that is flat to it
-/// the ends of its axes, and the farthest point.
+/// Returns points that span the part of the surface that faces a direction: for every ball that is
+/// flat to it the ends of its axes, and the farthest point.
 std::vector<NamedPoint> points_along(const BallProduct& shape, const Vec4& direction);
 
-/// Farthest point of the core.
+/// Returns the farthest point of the core along a direction.
 inline Vec4 core_support(const HullShape& s, const Vec4& direction) {
     return support(s, direction);
 }
@@ -48,7 +49,7 @@ inline Vec4 core_support(const BallProduct& s, const Vec4& direction) {
     return support(s, direction);
 }
 
-/// Cores that are products of balls.
+/// Returns the core of a shape as a product of balls at a place.
 PlacedBalls placed_core(const BallProduct& shape, const Mat4& turn, const Vec4& centre);
 PlacedBalls placed_core(const Hyperbox& shape, const Mat4& turn, const Vec4& centre);
 PlacedBalls placed_core(const Hypercapsule& shape, const Mat4& turn, const Vec4& centre);
@@ -56,18 +57,19 @@ template <class S>
 concept HasBallCore = requires(const S& shape, const Mat4& turn, const Vec4& centre) {
     { placed_core(shape, turn, centre) } -> std::same_as<PlacedBalls>;
 };
-/// Two such, of which one is round: boxes and capsules are better off as polytopes.
+/// kAreBallCores is true if both cores are products of balls and one of them is round. Pairs of
+/// boxes and capsules are better treated as polytopes.
 template <class A, class B>
 constexpr bool kAreBallCores = HasBallCore<A>&& HasBallCore<B> &&
                                (std::derived_from<A, BallProduct> ||
                                 std::derived_from<B, BallProduct>);
 
-/// Cores that are polytopes of many vertices.
+/// Returns the core of a hull as a polytope at a place.
 inline PlacedHull placed_core(const HullShape& shape, const Mat4& turn, const Vec4& centre) {
     return {shape.body->hull.vertices, shape.body->corners, turn, centre};
 }
 
-/// A core somewhere, as a support function.
+/// A PlacedCore is a core at a place, as a support function.
 template <class S>
 struct PlacedCore {
     const S& shape;
@@ -79,7 +81,7 @@ struct PlacedCore {
     }
 };
 
-/// The separation of two cores, by the best way that there is for them.
+/// Returns the separation of two cores by the best method for their types.
 /// @param guess, size, enough   see convex_separation.hpp
 template <class A, class B>
 ConvexSeparation core_separation(const PlacedCore<A>& a, const PlacedCore<B>& b, const Vec4& guess,
@@ -94,10 +96,10 @@ ConvexSeparation core_separation(const PlacedCore<A>& a, const PlacedCore<B>& b,
         return separation_of(a, b, guess, size, enough);
 }
 
-/// Moves a piece from the body's frame.
+/// Moves a piece from the body's frame to a place.
 void move_to(const Mat4& rotation, const Vec4& position, SurfacePiece& piece);
 
-/// A shape as the general pair functions see it, for as long as they work on it.
+/// A PlacedBody is a shape as the general pair functions see it, while they work on it.
 template <class S>
 class PlacedBody {
   public:
@@ -131,7 +133,7 @@ class PlacedBody {
     LevelAt level_{core_};
 };
 
-/// The general pair function for two shapes of which these views exist.
+/// Finds the contacts of two shapes for which these views exist, by the general pair function.
 template <class A, class B>
 void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b, double margin,
                       PairContacts& out) {
@@ -147,7 +149,7 @@ void general_contacts(const A& a, const Pose& pose_a, const B& b, const Pose& po
     convex_contacts(body_a.seen(), body_b.seen(), nearest, size, pose_a.position, margin, out);
 }
 
-/// The same for convex_contacts_over_face().
+/// Finds the contacts over a face in the same way, by convex_contacts_over_face().
 template <class A, class B>
 void general_contacts_over_face(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b,
                                 bool face_of_b, const Vec4& outward, double margin,

@@ -6,9 +6,9 @@
 
 namespace tesserae {
 
-/// The box's vertices whose separation is at most `margin` [m], reduced to kManifoldPoints.
-/// Feature: bit i is set for a vertex on the positive side of the box's axis i. A vertex behind the
-/// plane is pushed to the free side too, however deep.
+/// Finds the vertices of a box whose separation from a plane is at most `margin` [m], reduced to
+/// kManifoldPoints. In a feature bit i is set for a vertex on the positive side of the box's axis
+/// i. A vertex behind the plane is moved to the free side too, however deep.
 void contacts_between(const Hyperbox& box, const Pose& pose, const Hyperplane& plane,
                       const Pose& plane_pose, double margin, PairContacts& out);
 

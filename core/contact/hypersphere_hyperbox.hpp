@@ -6,9 +6,9 @@
 
 namespace tesserae {
 
-/// At most one point, feature 0, reported when the separation is at most `margin` [m]. A centre
-/// inside the box is pushed through the nearest of the eight cells; of several the one across the
-/// lowest axis, in the middle between two opposite ones the one on the axis's positive side.
+/// Finds at most one point, feature 0, if the separation is at most `margin` [m]. A centre inside
+/// the box is moved out through the nearest of the eight cells. Among several it is the one across
+/// the lowest axis; in the middle between two opposite cells it is the one on the positive side.
 void contacts_between(const Hypersphere& sphere, const Pose& pose, const Hyperbox& box,
                       const Pose& box_pose, double margin, PairContacts& out);
 

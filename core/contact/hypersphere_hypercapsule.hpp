@@ -6,8 +6,8 @@
 
 namespace tesserae {
 
-/// At most one point, feature 0, reported when the separation is at most `margin` [m]. A centre on
-/// the capsule's core is pushed along the capsule's x axis.
+/// Finds at most one point, feature 0, if the separation is at most `margin` [m]. A centre on the
+/// capsule's core is moved out along the capsule's x axis.
 void contacts_between(const Hypersphere& sphere, const Pose& pose, const Hypercapsule& capsule,
                       const Pose& capsule_pose, double margin, PairContacts& out);
 

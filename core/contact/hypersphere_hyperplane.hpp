@@ -6,8 +6,8 @@
 
 namespace tesserae {
 
-/// At most one point, feature 0, reported when the separation is at most `margin` [m]. A centre
-/// behind the plane is pushed to the free side too, however deep.
+/// Finds at most one point, feature 0, if the separation is at most `margin` [m]. A centre behind
+/// the plane is moved to the free side too, however deep.
 void contacts_between(const Hypersphere& sphere, const Pose& pose, const Hyperplane& plane,
                       const Pose& plane_pose, double margin, PairContacts& out);
 

@@ -8,8 +8,8 @@ namespace tesserae {
 /// Centres closer than this [m] count as one point: the square of a smaller distance loses digits.
 constexpr double kCoincident = 1e-140;
 
-/// At most one point, feature 0, reported when the separation is at most `margin` [m].
-/// Coincident centres leave the normal undefined: it is then +x.
+/// Finds at most one point, feature 0, if the separation is at most `margin` [m]. If the centres
+/// coincide, the normal is undefined: +x is taken.
 void contacts_between(const Hypersphere& a, const Pose& pose_a, const Hypersphere& b,
                       const Pose& pose_b, double margin, PairContacts& out);
 

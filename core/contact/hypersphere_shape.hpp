@@ -5,9 +5,9 @@
 
 namespace tesserae {
 
-/// A hypersphere against any bounded shape: the contact is the shape's own distance and gradient
-/// at the sphere's centre, outside, on the core and inside. At most one point, feature 0, reported
-/// when the separation is at most `margin` [m].
+/// Finds the contact of a hypersphere with any bounded shape from the shape's own distance and
+/// gradient at the sphere's centre, which may be outside, on the core or inside. There is at most
+/// one point, feature 0, if the separation is at most `margin` [m].
 template <class S>
 void sphere_contacts(const Hypersphere& sphere, const Pose& pose, const S& shape,
                      const Pose& shape_pose, double margin, PairContacts& out) {

@@ -10,13 +10,13 @@
 
 namespace tesserae {
 
-/// Many functions normal . x - offset, four side by side.
+/// LinearForms holds many functions normal . x - offset and evaluates four at a time.
 class LinearForms {
   public:
     void add(const Vec4& normal, double offset) {
         if (count_ % 4 == 0) fours_.emplace_back();
         Four& four = fours_.back();
-        // The rest of the four repeats it: of equal ones the first counts.
+        // It is repeated in the unused lanes: of equal ones the first counts.
         for (std::size_t lane = count_ % 4; lane < 4; ++lane) {
             for (std::size_t axis = 0; axis < 4; ++axis)
                 four.normal[axis][lane] = normal[static_cast<Eigen::Index>(axis)];
@@ -25,8 +25,9 @@ class LinearForms {
         ++count_;
     }
 
+    /// A Largest is the function that is largest at a point.
     struct Largest {
-        std::uint32_t number;  ///< of equal ones the lowest
+        std::uint32_t number;  ///< of the function; of equal ones the lowest
         double value;
     };
     Largest largest_at(const Vec4& x) const {
@@ -41,13 +42,14 @@ class LinearForms {
             place = is_larger ? here : place;
             here += 4;
         }
-        // Which lane has it is anyone's guess: no branches.
+        // No branches: which lane has the largest cannot be predicted.
         const double value = largest_lane(best);
         const double number = smallest_lane(best == value ? place : all_four(kInfinity));
         return {static_cast<std::uint32_t>(number), value};
     }
 
-    /// Where on a ray all of them are at most 0: from `enter` to `leave`, nowhere if that is less.
+    /// An Interval is the part of a ray where all functions are at most 0, from `enter` to `leave`.
+    /// If leave < enter it is empty.
     struct Interval {
         double enter, leave;
     };

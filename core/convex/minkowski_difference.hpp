@@ -7,13 +7,15 @@
 
 namespace tesserae {
 
-/// A point of the difference, and the point of a that it comes from; b's is on_a - at.
+/// A DifferencePoint is a point of the difference and the point of a that it comes from. The point
+/// of b is on_a - at.
 struct DifferencePoint {
     Vec4 at, on_a;
 };
 
-/// The Minkowski difference a - b of two bodies, all x - y with x in a and y in b, in units in
-/// which both are about 1 large: squares and cubes of lengths neither overflow nor vanish.
+/// A MinkowskiDifference is the set a - b of two bodies: all x - y with x in a and y in b. It uses
+/// units in which both are about 1 large, so that squares and cubes of lengths neither overflow nor
+/// vanish.
 class MinkowskiDifference {
   public:
     MinkowskiDifference(const Support& a, const Support& b, double size)
@@ -23,27 +25,29 @@ class MinkowskiDifference {
           unit_(size > 0 && std::isfinite(size) ? std::ldexp(1.0, std::ilogb(size)) : 1),
           to_units_(1 / unit_) {}
 
-    /// The farthest point along a direction.
+    /// Returns the farthest point along a direction.
     DifferencePoint support(const Vec4& direction) const {
         return point_of({a_(direction), b_(-direction)});
     }
+    /// Returns the point of the difference that a pair of vertices makes.
     DifferencePoint point_of(const VertexPair& pair) const {
         const Vec4 on_a = to_units_ * pair.on_a, on_b = to_units_ * pair.on_b;
         return {on_a - on_b, on_a};
     }
-    /// The length of the unit [m].
+    /// Returns the length of the unit [m].
     double unit() const { return unit_; }
-    /// Below this, in units, a length is rounding.
+    /// Returns the length below which a length is rounding [units].
     double rounding() const { return rounding_; }
-    /// Learns from a point how large coordinates are.
+    /// Raises rounding() to suit the size of a point's coordinates.
     void note_coordinates(const DifferencePoint& p) {
         const double largest = std::max(p.on_a.cwiseAbs().maxCoeff(), p.at.cwiseAbs().maxCoeff());
         rounding_ = std::max(rounding_, kRounding * largest);
     }
 
   private:
-    /// Two units in the last place of 1; the tolerances are multiples of it. Less, and loops end
-    /// only by lack of progress; more, and it is the error of what is returned.
+    /// A coordinate of 1 [units] is rounded by this, usual 4e-16: two units in the last place. The
+    /// tolerances are multiples of it. Less, and loops end only by lack of progress; more, and the
+    /// error of the result is as much.
     static constexpr double kRounding = 4e-16;
 
     const Support& a_;

@@ -8,18 +8,19 @@
 
 namespace tesserae {
 
-/// What Qhull finds of a hull; empty where the points are flat. Of more than kMostVertices it may
-/// be the hull of some points only.
+/// QhullFacets is what Qhull finds of a hull. It is empty if the points are flat. If there are more
+/// than kMostVertices, it may be the hull of only some of the points.
 struct QhullFacets {
-    std::vector<std::size_t> vertices;  ///< which points are, ascending
-    std::vector<HalfSpace> planes;      ///< several may be about the same
+    std::vector<std::size_t> vertices;  ///< numbers of the points that are vertices, ascending
+    std::vector<HalfSpace> planes;      ///< of the facets; several may be about the same
 };
 
+/// Returns the convex hull of points.
 QhullFacets qhull_facets(const std::vector<Vec4>& points);
 
-/// The convex hull of points in three dimensions: its polygons, by their corners' places among the
-/// points, counter-clockwise seen from outside. Points that are in one plane to rounding make one
-/// polygon. Empty where all points are in one plane, to rounding.
+/// Returns the polygons of the convex hull of points in three dimensions, each by the places of its
+/// corners among the points, counter-clockwise seen from outside. Points that are in one plane to
+/// rounding make one polygon. The result is empty if all points are in one plane, to rounding.
 std::vector<std::vector<std::uint32_t>> qhull_polygons(std::vector<Eigen::Vector3d> points);
 
 }  // namespace tesserae

@@ -7,38 +7,42 @@
 
 namespace tesserae {
 
-/// v without what of it lies along n orthonormal directions, again where that was most of it: the
-/// rest is orthogonal to them to rounding of itself (Kahan, Parlett: twice is enough).
+/// Returns the part of v that is orthogonal to n orthonormal directions. If that is only a small
+/// part of v, it is computed twice, so that the result is orthogonal to rounding of itself (Kahan,
+/// Parlett: twice is enough).
 Vec4 orthogonal_part(const Vec4& v, const Vec4* directions, int n);
 
-/// A simplex of 1 to 5 points of a Minkowski difference and the point of it that is nearest to a
-/// target. Of the points only those are kept that the nearest point is in the inside of.
+/// A Simplex is 1 to 5 points of a Minkowski difference, and the point of it that is nearest to a
+/// target. It keeps only the points that have the nearest point in their inside.
 ///
-/// The nearest point after another one is added is found as in Wolfe, "Finding the nearest point in
-/// a polytope" (1976): go toward the nearest point of the affine hull; drop the point whose weight
-/// becomes 0 on the way; repeat. Wolfe's normal equations, solved twice, serve only where the edges
-/// are well apart in direction; near-degenerate simplices need them made orthonormal. Unlike the
-/// trial of all faces (Gilbert, Johnson, Keerthi 1988) it mostly takes one or two solutions, and
-/// the distance never rises.
+/// After a point is added, the nearest point is found as in Wolfe, "Finding the nearest point in a
+/// polytope" (1976): go toward the nearest point of the affine hull; drop the point whose weight
+/// becomes 0 on the way; repeat. Wolfe's normal equations, solved twice, serve only where the
+/// directions of the edges are well apart. The edges of near-degenerate simplices are first made
+/// orthonormal. Unlike the trial of all faces (Gilbert, Johnson, Keerthi 1988) it mostly takes one
+/// or two solutions, and the distance never rises.
 class Simplex {
   public:
-    /// Starts anew with one point.
+    /// Starts again with one point.
     void start(const Vec4& target, const DifferencePoint& point);
-    /// Starts anew with 1 to 5 points; those are kept that the nearest point is in the inside of.
+    /// Starts again with 1 to 5 points. Those are kept that have the nearest point in their inside.
     void start(const Vec4& target, std::span<const DifferencePoint> points);
-    /// Takes in a point. False: that brought the nearest point no nearer.
+    /// Adds a point. Returns false, and changes nothing, if the point is there already or there are
+    /// five.
+    /// @param at_least   lower bound of the distance from the target; a nearest point below it is
+    ///                   rounding
     bool add(const DifferencePoint& point, double at_least);
 
-    /// Finds the nearest point again by orthonormal edges alone, and so from now on. False: they
-    /// make no difference.
+    /// Finds the nearest point again by orthonormal edges alone, and does so from now on. Returns
+    /// false if that makes no difference.
     bool refine();
 
-    /// As seen from the target.
+    /// Returns the nearest point, relative to the target.
     const Vec4& nearest() const { return nearest_; }
-    /// Whether the target is inside of 5 points.
+    /// Returns whether the target is inside of 5 points.
     bool contains_target() const { return contains_target_; }
     const Vec4& target() const { return target_; }
-    /// Where on body a the nearest point comes from.
+    /// Returns the point of body a that the nearest point comes from.
     Vec4 nearest_on_a() const;
 
     int count() const { return count_; }
@@ -47,7 +51,7 @@ class Simplex {
   private:
     static constexpr int kMaxPoints = 5;
 
-    /// The points from one of them.
+    /// The edges from one of the points, `base`, to the others.
     struct Edges {
         int base, count;
         std::array<Vec4, kMaxPoints - 1> edge;
@@ -66,11 +70,11 @@ class Simplex {
 
     Vec4 target_, nearest_;
     std::array<DifferencePoint, kMaxPoints> points_;
-    std::array<Vec4, kMaxPoints> seen_;  ///< the points from the target
+    std::array<Vec4, kMaxPoints> seen_;  ///< the points relative to the target
     std::array<double, kMaxPoints> weight_;
     int count_ = 0;
     bool contains_target_ = false;
-    bool is_careful_ = false;  ///< only by orthonormal edges
+    bool is_careful_ = false;  ///< uses only orthonormal edges, see refine()
 };
 
 }  // namespace tesserae

@@ -7,34 +7,37 @@
 
 namespace tesserae {
 
-/// Looks for the vertices that two polytopes' nearest points are between, or that surround a point
-/// which both share: as Simplex, but from point to point by what the last one knew, which loses a
-/// digit or two in each of its few rounds and would not do for what is nearly degenerate. Whoever
-/// needs the separation begins with what this finds.
+/// A VertexSearch looks for the vertices that the nearest points of two polytopes lie between, or
+/// that surround a point which both share. It works as Simplex does, but computes each step from
+/// the last. That loses a digit or two in each of its few rounds, which is not accurate enough for
+/// nearly degenerate cases. The separation is therefore computed from what this finds, by
+/// separation_of().
 ///
-/// With the points y_i of the Minkowski difference go the vectors r_i in their span with
-/// r_i . y_j = 1 where i = j, else 0. Their sum u is v / |v|^2, where v is the point of the affine
-/// hull that is nearest to the origin, and r_i . u / |u|^2 are its weights; to take in a point or
-/// leave one out is a sum of such vectors. All r_i lie side by side, the same component of each in
-/// one register.
+/// With the points y_i of the Minkowski difference go the vectors r_i in their span with r_i . y_j
+/// = 1 where i = j, else 0. Their sum u is v / |v|^2, where v is the point of the affine hull that
+/// is nearest to the origin, and r_i . u / |u|^2 are its weights. Adding a point or leaving one out
+/// takes a sum of such vectors. All r_i lie side by side, the same component of each in one
+/// register.
 class VertexSearch {
   public:
-    /// A vertex of each by their numbers.
+    /// A Pair is a vertex of each body, by their numbers.
     struct Pair {
         std::uint32_t of_a, of_b;
     };
 
     VertexSearch(const PlacedHull& a, const PlacedHull& b);
 
+    /// An End says how a search ended.
     enum class End {
-        kNear,  ///< the pairs are those of the nearest points, or five around what is shared
-        kFar,   ///< the bodies are farther apart than asked along far_direction(), by the one pair
+        kNear,  ///< found the pairs of the nearest points, or five around a shared point
+        kFar,   ///< the one pair shows a gap above `enough` along far_direction()
     };
+    /// Runs the search.
     /// @param guess    unit direction from a to b, world
-    /// @param enough   a gap above this ends it [m]
+    /// @param enough   a gap above this ends the search [m]
     End run(const Vec4& guess, double enough);
 
-    /// What it has come to, the heaviest first.
+    /// Returns the number of pairs that were found; the heaviest comes first.
     int count() const { return count_; }
     const Pair& pair(int i) const { return found_[static_cast<std::size_t>(i)]; }
     const Vec4& far_direction() const { return far_direction_; }

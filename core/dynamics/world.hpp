@@ -15,10 +15,11 @@
 
 namespace tesserae {
 
-/// Bodies that move. The one text of the step: by itself it is serial, tests every two bodies for
-/// contacts and solves islands one by one; a Schedule shares the same work out, with the same bits.
+/// A world of moving bodies, and the only text of the time step. By itself the step is serial,
+/// tests every two bodies for contacts and solves islands one by one; a Schedule shares out the
+/// same work, with the same bits.
 ///
-/// All that a step depends on is bodies() and memory(): a world made from both as saved goes on
+/// A step depends on bodies() and memory() only: a world that is made from both as saved continues
 /// with the same bits.
 class World {
   public:
@@ -31,9 +32,11 @@ class World {
     /// @throws InputError        dt is not finite or not > 0
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
+    /// Advances by dt [s], with the work shared out by a schedule.
     StepReport step(double dt, Schedule& schedule);
 
-    /// From the next step on the observer sees every stage; null ends that. Changes no result.
+    /// Lets an observer see every stage from the next step on; null ends this. It changes no
+    /// result.
     void observe(StageObserver* observer) { observer_ = observer; }
 
     const Simulation& simulation() const { return simulation_; }
@@ -75,9 +78,9 @@ class World {
     FirstLoads first_loads_;
     ImpactPatches impact_patches_;
     FastBodies fast_bodies_;
-    std::vector<std::vector<std::uint32_t>> hits_;  ///< of every range of contacts, the impacts
+    std::vector<std::vector<std::uint32_t>> hits_;  ///< impacts of every range of contacts
     std::vector<std::uint8_t> has_fast_;            ///< of every range of kBodyGrain bodies
-    /// Of every range of contacts, and an end.
+    /// The first kept impulse of every range of contacts, and the end.
     std::vector<KeptImpulses::Size> first_pushing_;
     StageObserver* observer_ = nullptr;
 };

@@ -10,12 +10,13 @@
 
 namespace tesserae {
 
-/// The one way to write a file. Bytes go to PATH.partial; finish() checks, syncs and closes it,
-/// renames it to PATH and syncs the folder, so that a file under its final name is always whole.
-/// Without finish() the destructor removes what was written. The partial file is locked (flock): a
-/// second process that writes the same file is told so; a leftover of a killed one is overwritten.
-/// Any failure (disk full, folder missing or read-only, locked) throws RunError with the path and
-/// the system's reason, and is remembered: every later call throws it again.
+/// A FileWriter writes a file; it is the only way in which files are written. Bytes go to
+/// PATH.partial. finish() checks, syncs and closes it, renames it to PATH and syncs the folder, so
+/// that a file under its final name is always complete. Without finish() the destructor removes
+/// what was written. The partial file is locked (flock): a second process that writes the same file
+/// gets an error, and a leftover of a killed one is overwritten. Any failure (disk full, folder
+/// missing or read-only, locked) throws RunError with the path and the system's reason. It is
+/// remembered: every later call throws it again.
 class FileWriter {
   public:
     explicit FileWriter(std::filesystem::path path);

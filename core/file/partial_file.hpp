@@ -5,14 +5,16 @@
 
 namespace tesserae {
 
-/// PATH.partial, open for reading and writing and locked (flock) against other processes until it
-/// gets its final name. A killed process leaves no lock, and its leftover content is still there
-/// when the file is opened again. Failures throw RunError with the path and the system's reason.
+/// A PartialFile is the file PATH.partial, open for reading and writing. It is locked (flock)
+/// against other processes until it gets its final name. A killed process leaves no lock, and its
+/// leftover content is still there when the file is opened again. Failures throw RunError with the
+/// path and the system's reason.
 class PartialFile {
   public:
-    /// @throws RunError   cannot be created, or another process holds it
+    /// Opens and locks the file.
+    /// @throws RunError   it cannot be created, or another process holds it
     explicit PartialFile(std::filesystem::path path);
-    /// Leaves the file where it is.
+    /// Closes the file and leaves it where it is.
     ~PartialFile();
     PartialFile(const PartialFile&) = delete;
     PartialFile& operator=(const PartialFile&) = delete;
@@ -21,16 +23,19 @@ class PartialFile {
     const std::filesystem::path& partial() const { return partial_; }
     int descriptor() const { return descriptor_; }
 
-    /// Lets others lock it for reading, as HDF5's readers do; still keeps other writers out.
+    /// Lets others lock the file for reading, as HDF5's readers do. Other writers are still kept
+    /// out.
     void admit_readers();
-    /// Makes it a copy of another file. A failure removes it: half of a copy is of no use.
+    /// Makes the file a copy of another. If that fails, the file is removed: half of a copy is of
+    /// no use.
     void copy_from(const std::filesystem::path& other);
-    /// Syncs the content, renames it to PATH while still locked, syncs the folder, and closes.
+    /// Syncs the content, renames the file to PATH while it is still locked, syncs the folder, and
+    /// closes.
     void publish();
-    /// Takes the file away.
+    /// Removes the file and closes it.
     void remove() noexcept;
 
-    /// The message of a failure: path, what could not be done, the system's reason.
+    /// Returns the message of a failure: path, what could not be done, the system's reason.
     std::string message(const char* what, int error) const;
 
   private:

@@ -7,21 +7,23 @@
 
 namespace tesserae {
 
-/// A ball over some of the axes: a segment, a disc or a ball of three dimensions.
+/// A BallFactor is a ball over some of the axes: a segment, a disc or a three-dimensional ball.
 struct BallFactor {
-    Vec4 axes = Vec4::Zero();  ///< 1 for its axes, else 0
+    Vec4 axes = Vec4::Zero();  ///< 1 for the axes of the ball, else 0
     int dimensions = 0;
     double radius = 0;  ///< [m]
 };
 
-/// The points whose part along every factor's axes lies in its ball; every axis belongs to one
-/// factor. A spherinder, a cubinder and a duocylinder each are one, and their rooms make it.
+/// A BallProduct is the product of balls that share out the axes. A point is inside if its part
+/// along every factor's axes lies in that factor's ball. Spherinder, cubinder and duocylinder each
+/// are one; their rooms make it.
 struct BallProduct {
     std::array<BallFactor, 3> factor;
     std::size_t factors = 0;
 
     void clear() { factors = 0; }
-    /// @param axes   1 for the factor's, else 0
+    /// Adds a factor.
+    /// @param axes   1 for the axes of the ball, else 0
     void add(const Vec4& axes, double radius) {
         factor[factors++] = {axes, static_cast<int>(axes.sum()), radius};
     }
@@ -41,8 +43,8 @@ double ray_hit(const BallProduct& shape, const Vec4& origin, const Vec4& directi
 double ray_exit(const BallProduct& shape, const Vec4& origin, const Vec4& direction);
 Rim rim(const BallProduct& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
 
-/// The point of a factor's ball that is farthest along a direction's part; where it has none, the
-/// end of the first axis.
+/// Returns the point of a factor's ball that is farthest along the direction. Where the direction
+/// has no part along the factor's axes, it is the end of the first axis.
 Vec4 support(const BallFactor& factor, const Vec4& direction);
 
 }  // namespace tesserae

@@ -9,10 +9,10 @@
 
 namespace tesserae {
 
-/// The rim of any convex bounded shape, from its distance, normal and support: with s = 1/t the
-/// ratio f(t)/t is a convex function of s, and its slope is f - t f'(t). Outside the shape its
-/// square is a parabola on each feature, inside it is a line: between the ends of a bracket the
-/// next s is where the slope of the square, or the tangents, say that the least is.
+/// Finds the rim of any convex bounded shape from its distance, normal and support. With s = 1/t
+/// the ratio f(t)/t is a convex function of s, and its slope is f - t f'(t). Outside the shape the
+/// square of the ratio is a parabola on each feature; inside, the ratio is a line. Between the ends
+/// of a bracket the next s is where the slope of the square, or the tangents, place the minimum.
 template <class S>
 class ConvexRim {
   public:
@@ -21,7 +21,7 @@ class ConvexRim {
 
     Rim run() {
         const double size = bounding_radius(shape_);
-        // The ball about it is seen under a larger angle.
+        // The ball about the shape is seen under a larger angle.
         const double square = origin_.squaredNorm();
         if (square > size * size && is_plain_square(square) &&
             ball_rim(size, origin_, square, direction_).sine >= range_.high)
@@ -52,7 +52,7 @@ class ConvexRim {
 
   private:
     static constexpr int kMostSteps = 200;
-    /// Of the sine.
+    /// The search ends when the sine is known to this.
     static constexpr double kClose = 1e-16;
 
     struct At {
@@ -65,7 +65,7 @@ class ConvexRim {
         const double distance = signed_distance(shape_, point);
         return {s, distance * s, distance - t * normal(shape_, point).dot(direction_)};
     }
-    /// At the far end of the ray; at infinity the shape is a point.
+    /// Returns the values at the far end of the ray. At infinity the shape is a point.
     At first() {
         if (range_.limit < kMiss) return at(1 / range_.limit);
         return {0, 1, direction_.dot(origin_ - support(shape_, direction_))};
@@ -86,12 +86,14 @@ class ConvexRim {
     bool halve_ = false;
 };
 
-/// Part of the lengths involved by which a ray must clearly meet a shape, or miss it, to decide.
+/// A ray that meets or misses a shape by more than this part of the lengths involved does so
+/// clearly, usual 1e-9. Less, and rounding decides.
 constexpr double kClearlyMet = 1e-9;
 
-/// Whether a ray meets a shape or not says enough of hard shadows, where that is clear.
-/// @param inside   which part of the ray is in the shape, enter > leave if it misses
-/// @param scale    the lengths involved
+/// Returns the rim of a ray if it is enough to know whether the ray meets the shape (hard shadows)
+/// and if that is clear.
+/// @param inside   the part of the ray that is in the shape, enter > leave if it misses
+/// @param scale    the lengths involved [m]
 inline std::optional<Rim> rim_by_interval(const RayInterval& inside, double scale,
                                           const RimRange& range) {
     const double first = std::max(0.0, inside.enter), last = std::min(range.limit, inside.leave);
@@ -101,6 +103,7 @@ inline std::optional<Rim> rim_by_interval(const RayInterval& inside, double scal
     return {};
 }
 
+/// Returns the rim, found by ConvexRim.
 template <class S>
 Rim convex_rim(const S& shape, const Vec4& origin, const Vec4& direction, const RimRange& range) {
     return ConvexRim<S>(shape, origin, direction, range).run();

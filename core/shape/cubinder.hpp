@@ -4,7 +4,7 @@
 
 namespace tesserae {
 
-/// A disc in x and y times a rectangle in z and w.
+/// A Cubinder is a disc in x and y times a rectangle in z and w.
 struct Cubinder : BallProduct {
     static constexpr const char* kName = "cubinder";
     static constexpr bool kBounded = true;

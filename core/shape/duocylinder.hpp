@@ -4,12 +4,12 @@
 
 namespace tesserae {
 
-/// A disc in x and y times a disc in z and w.
+/// A Duocylinder is a disc in x and y times a disc in z and w.
 struct Duocylinder : BallProduct {
     static constexpr const char* kName = "duocylinder";
     static constexpr bool kBounded = true;
 
-    Vec2 radii = Vec2::Ones();  ///< [m], > 0
+    Vec2 radii = Vec2::Ones();  ///< of the discs in x, y and in z, w [m], > 0
 
     friend bool operator==(const Duocylinder& a, const Duocylinder& b) {
         return a.radii == b.radii;

@@ -7,14 +7,15 @@
 
 namespace tesserae {
 
-/// A regular polygon in x and y, with a vertex on +x, times one in z and w, with a vertex on +z.
+/// A Duoprism is a regular polygon in x and y, with a vertex on +x, times one in z and w, with a
+/// vertex on +z.
 struct Duoprism : HullShape {
     static constexpr const char* kName = "duoprism";
     static constexpr bool kBounded = true;
-    /// Vertices: the product of the numbers of sides.
+    /// A duoprism has at most so many vertices, the product of the two numbers of sides.
     static constexpr std::int64_t kMostVertices = 1000;
 
-    std::array<std::int64_t, 2> polygons = {4, 4};  ///< sides, >= 3
+    std::array<std::int64_t, 2> polygons = {4, 4};  ///< numbers of sides, >= 3
     Vec2 radii = Vec2::Ones();                      ///< circumradii [m], > 0
 
     friend bool operator==(const Duoprism& a, const Duoprism& b) {
@@ -31,7 +32,7 @@ struct Duoprism : HullShape {
     }
 };
 
-/// Makes the hull.
+/// Makes the hull from the parameters.
 /// @throws InputError   as hull_of(), and for more than kMostVertices
 void complete(Duoprism&);
 

@@ -10,28 +10,28 @@
 
 namespace tesserae {
 
-/// What a hull's functions need, made once.
+/// Holds what the functions of a hull need, computed once.
 struct HullBody {
     explicit HullBody(Hull hull);
 
     Hull hull;
-    LinearForms corners;  ///< x . vertex
-    LinearForms planes;   ///< of the cells
-    LinearForms normals;  ///< x . a cell's normal
-    double radius = 0;    ///< of the ball about the centre
-    PrincipalAxes axes;   ///< of 1 kg and a hull of size 1
+    LinearForms corners;  ///< x . vertex, of all vertices
+    LinearForms planes;   ///< distance of x from each cell's plane [m]
+    LinearForms normals;  ///< x . normal, of all cells
+    double radius = 0;    ///< of the ball about the centre of mass [m]
+    PrincipalAxes axes;   ///< for a mass of 1 kg and a hull of size 1 m
 };
 
-/// A convex hull of points about its centre of mass: polychora and duoprisms each are one, and
-/// their rooms make it.
+/// A HullShape is the convex hull of points, about its centre of mass. Polychora and duoprisms each
+/// are one; their rooms make it.
 struct HullShape {
     std::shared_ptr<const HullBody> body;  ///< equal shapes share it
 };
 
 double volume(const HullShape& shape);
-/// Along its principal axes.
+/// Returns the second moments along the principal axes [kg m^2].
 Vec4 second_moments(const HullShape& shape, double mass);
-/// What takes them to the body's axes; null if they are those.
+/// Returns the rotor from the principal axes to the body's axes, or null if they are the same.
 const Rotor* principal_axes(const HullShape& shape);
 double bounding_radius(const HullShape& shape);
 Vec4 half_extents(const HullShape& shape, const Mat4& rotation);
@@ -41,17 +41,17 @@ double signed_distance(const HullShape& shape, const Vec4& point);
 Vec4 normal(const HullShape& shape, const Vec4& point);
 double ray_hit(const HullShape& shape, const Vec4& origin, const Vec4& direction);
 double ray_exit(const HullShape& shape, const Vec4& origin, const Vec4& direction);
-/// Of a point of the surface: the mean of the normals of all cells there. In a slice two cells may
-/// be as one, and which of them is nearer is rounding.
+/// Returns the mean of the normals of all cells at a point of the surface. In a slice two cells may
+/// coincide, and which of them is nearer is rounding.
 Vec4 shading_normal(const HullShape& shape, const Vec4& point);
 bool is_face_normal(const HullShape& shape, const Vec4& direction);
 Face face_along(const HullShape& shape, const Vec4& direction);
 std::uint64_t faces_near(const HullShape& shape, const Vec4& point, double depth);
-/// The largest of the cells' planes' distances.
+/// Returns the largest signed distance [m] of the point from the planes of the cells.
 Level quick_level(const HullShape& shape, const Vec4& point);
 Rim rim(const HullShape& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
 
-/// Memory of what equal shapes share.
+/// Returns the bytes of memory that equal shapes share.
 std::size_t shared_bytes(const HullShape& shape);
 
 }  // namespace tesserae

@@ -4,7 +4,7 @@
 
 namespace tesserae {
 
-/// A box with its sides along the body's axes, centred.
+/// A Hyperbox is a box about the centre, with its sides along the body's axes.
 struct Hyperbox {
     static constexpr const char* kName = "hyperbox";
     static constexpr bool kBounded = true;

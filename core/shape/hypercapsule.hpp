@@ -4,7 +4,8 @@
 
 namespace tesserae {
 
-/// All points within `radius` of a segment along the body's y axis, centred, of length `height`.
+/// A Hypercapsule is all points within `radius` of its core, a segment of length `height` about the
+/// centre along the body's y axis.
 struct Hypercapsule {
     static constexpr const char* kName = "hypercapsule";
     static constexpr bool kBounded = true;

@@ -4,13 +4,13 @@
 
 namespace tesserae {
 
-/// A half-space of the world: the side that the normal points to is free, the other solid. Its
-/// boundary is normal . p = offset.
+/// A Hyperplane is a half-space of the world: the side that the normal points to is free, the other
+/// is solid. Its boundary is normal . p = offset.
 struct Hyperplane {
     static constexpr const char* kName = "hyperplane";
     static constexpr bool kBounded = false;
 
-    Vec4 normal = Vec4::UnitY();  ///< unit once completed; any nonzero direction before
+    Vec4 normal = Vec4::UnitY();  ///< unit after complete(); before, any nonzero direction
     double offset = 0;            ///< [m], along the unit normal
 
     friend bool operator==(const Hyperplane&, const Hyperplane&) = default;
@@ -26,7 +26,7 @@ struct Hyperplane {
     }
 };
 
-/// Makes the normal unit.
+/// Scales the normal to unit length.
 void complete(Hyperplane&);
 double volume(const Hyperplane& shape);
 Vec4 second_moments(const Hyperplane& shape, double mass);

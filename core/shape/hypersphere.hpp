@@ -4,7 +4,7 @@
 
 namespace tesserae {
 
-/// All points within `radius` of the centre.
+/// A Hypersphere is all points within `radius` of the centre.
 struct Hypersphere {
     static constexpr const char* kName = "hypersphere";
     static constexpr bool kBounded = true;
@@ -32,12 +32,13 @@ double ray_hit(const Hypersphere& shape, const Vec4& origin, const Vec4& directi
 double ray_exit(const Hypersphere& shape, const Vec4& origin, const Vec4& direction);
 Rim rim(const Hypersphere& shape, const Vec4& origin, const Vec4& direction, const RimRange& range);
 
-/// Where along a ray from outside the rim's least f(t)/t is met, and that ratio: 1 at infinity
-/// where the ball lies behind.
+/// A BallRim is the least f(t)/t of a ball along a ray from outside (see Rim), and the distance [m]
+/// at which it is met. The least is 1, at infinity, where the ball lies behind.
 struct BallRim {
     double sine, distance;
 };
-/// @param square   |origin|^2, at least radius^2; a plain square
+/// Returns the rim of a ball about the origin of coordinates.
+/// @param square   |origin|^2, at least radius^2; see is_plain_square()
 BallRim ball_rim(double radius, const Vec4& origin, double square, const Vec4& direction);
 
 }  // namespace tesserae

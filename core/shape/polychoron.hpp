@@ -6,10 +6,10 @@
 
 namespace tesserae {
 
-/// Which regular polychoron; its vertices stand as scenes/FORMATS.md says.
+/// Names a regular polychoron. scenes/FORMATS.md says where its vertices are.
 enum class RegularPolychoron { kNone, k5Cell, k8Cell, k16Cell, k24Cell, k120Cell, k600Cell };
 
-/// The convex hull of points, about its centre of mass.
+/// A Polychoron is the convex hull of points, or a regular polychoron, about its centre of mass.
 struct Polychoron : HullShape {
     static constexpr const char* kName = "polychoron";
     static constexpr bool kBounded = true;
@@ -21,7 +21,7 @@ struct Polychoron : HullShape {
     friend bool operator==(const Polychoron& a, const Polychoron& b) {
         return a.vertices == b.vertices && a.regular == b.regular && a.radius == b.radius;
     }
-    /// Those in use.
+    /// Visits only the parameters in use: the vertices, or the name and the radius.
     template <class Self, class Visit>
     static void parameters(Self& self, Visit&& visit) {
         if (self.regular == RegularPolychoron::kNone) {
@@ -39,14 +39,14 @@ struct Polychoron : HullShape {
     }
 };
 
-/// Makes the hull.
+/// Makes the hull from the parameters.
 /// @throws InputError   as hull_of()
 void complete(Polychoron&);
 
-/// As scene files call them, in their order from k5Cell on.
+/// Scene files use these names for the regular polychora, in their order from k5Cell on.
 constexpr const char* kRegularNames[] = {"5-cell",  "8-cell",   "16-cell",
                                          "24-cell", "120-cell", "600-cell"};
-/// The vertices of a regular polychoron, on the unit sphere.
+/// Returns the vertices of a regular polychoron, on the unit sphere.
 std::vector<Vec4> regular_vertices(RegularPolychoron which);
 
 }  // namespace tesserae

@@ -14,12 +14,13 @@
 
 namespace tesserae {
 
-/// The shape itself; an error that names what is missing where its room is not complete.
+/// Complete<S> is the shape S itself. If its room is not complete, the compiler names what is
+/// missing.
 template <ShapeRoom S>
 using Complete = S;
 
-/// The shape list: a new shape is its room, its pair files and one entry here. Code that works on
-/// any shape visits it.
+/// A Shape is any one of the shapes. A new shape is its room, its pair files and one entry in this
+/// list. Code that works on any shape visits it.
 using Shape = std::variant<Complete<Hypersphere>, Complete<Hypercapsule>, Complete<Hyperbox>,
                            Complete<Hyperplane>, Complete<Polychoron>, Complete<Duoprism>,
                            Complete<Spherinder>, Complete<Cubinder>, Complete<Duocylinder>>;
@@ -30,12 +31,13 @@ inline const char* name_of(const Shape& shape) {
 inline bool is_bounded(const Shape& shape) {
     return std::visit([](const auto& s) { return s.kBounded; }, shape);
 }
-/// Of the ball about the centre that holds it [m]; infinite if unbounded.
+/// Returns the radius of the ball about the centre that holds the shape [m]; infinite if unbounded.
 inline double bounding_radius(const Shape& shape) {
     return std::visit([](const auto& s) { return bounding_radius(s); }, shape);
 }
 
-/// Outward at a point of its surface, unit, in its own frame: what a picture is shaded with.
+/// Returns the unit outward normal at a point of the surface, in the shape's frame. Pictures are
+/// shaded with it.
 inline Vec4 surface_normal(const Shape& shape, const Vec4& point) {
     return std::visit(
         [&]<class S>(const S& s) -> Vec4 {
@@ -46,7 +48,7 @@ inline Vec4 surface_normal(const Shape& shape, const Vec4& point) {
         },
         shape);
 }
-/// What takes its principal axes to the body's; null if they are those.
+/// Returns the rotor from the principal axes to the body's axes, or null if they are the same.
 inline const Rotor* principal_axes_of(const Shape& shape) {
     return std::visit(
         []<class S>(const S& s) -> const Rotor* {

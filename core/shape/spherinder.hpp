@@ -4,12 +4,12 @@
 
 namespace tesserae {
 
-/// A ball of three dimensions, in x, z and w, times a segment along y.
+/// A Spherinder is a three-dimensional ball in x, z and w times a segment along y.
 struct Spherinder : BallProduct {
     static constexpr const char* kName = "spherinder";
     static constexpr bool kBounded = true;
 
-    double radius = 1;  ///< [m], > 0
+    double radius = 1;  ///< of the ball [m], > 0
     double height = 1;  ///< of the segment [m], > 0
 
     friend bool operator==(const Spherinder& a, const Spherinder& b) {

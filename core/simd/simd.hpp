@@ -10,32 +10,34 @@
 #include <immintrin.h>
 #endif
 
-// Several numbers at once, by the vector extension of gcc and clang: one instruction where the CPU
-// has AVX, several elsewhere. Every operation is rounded as IEEE says, element by element, so that
-// one lane gives the bits of a plain number; product_sum() alone does not.
+// This header works on several numbers at once, by the vector extension of gcc and clang. An
+// operation is one instruction if the CPU has AVX, otherwise several. Every operation is rounded as
+// IEEE says, element by element, so that a lane has the bits of a plain number. Only product_sum()
+// is an exception.
 //
 // All functions are inlined: in a loop a call would put the vectors into memory.
 namespace tesserae::simd {
 
-/// Of a Float8.
+/// A Float8 has so many lanes.
 constexpr std::size_t kLanes = 8;
 
 using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Float8 = float __attribute__((vector_size(kLanes * sizeof(float))));
-/// Two Float8, where the CPU has AVX-512.
+/// A Float16 is two Float8. It is used if the CPU has AVX-512.
 using Float16 = float __attribute__((vector_size(2 * kLanes * sizeof(float))));
 using Unsigned4 = std::uint32_t __attribute__((vector_size(4 * sizeof(std::uint32_t))));
 using Half8 = std::uint16_t __attribute__((vector_size(kLanes * sizeof(std::uint16_t))));
 using Unsigned8 = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
 using Double2 = double __attribute__((vector_size(2 * sizeof(double))));
 using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
-/// What comparing Double4s gives.
+/// A Mask4 is the result of a comparison of two Double4.
 using Mask4 = long long __attribute__((vector_size(4 * sizeof(long long))));
 
+/// Returns a vector with the same number in all lanes.
 [[gnu::always_inline]] inline Float8 all_lanes(float x) { return Float8{x, x, x, x, x, x, x, x}; }
 [[gnu::always_inline]] inline Double4 all_four(double x) { return Double4{x, x, x, x}; }
 
-/// By the bits: from numbers of one kind to as many of another, of the same size.
+/// Converts numbers to another type of the same size and keeps their bits.
 template <class To, class From>
 [[gnu::always_inline]] inline To same_bits(From from) {
     static_assert(sizeof(To) == sizeof(From));
@@ -44,12 +46,12 @@ template <class To, class From>
     return to;
 }
 
-/// The larger of both; b where they are equal or one is no number.
+/// Returns the larger of both; b if they are equal or one is NaN.
 template <class V>
 [[gnu::always_inline]] inline V larger(V a, V b) {
     return a > b ? a : b;
 }
-/// The smaller of both; b where they are equal or one is no number.
+/// Returns the smaller of both; b if they are equal or one is NaN.
 template <class V>
 [[gnu::always_inline]] inline V smaller(V a, V b) {
     return a < b ? a : b;
@@ -88,7 +90,8 @@ template <class V>
 #endif
 }
 
-/// a * b + c, where the CPU can with one rounding: for bounds that are rounded outward.
+/// Returns a * b + c, with one rounding if the CPU can. It serves for bounds that are rounded
+/// outward.
 [[gnu::always_inline]] inline Float8 product_sum(Float8 a, Float8 b, Float8 c) {
 #ifdef __FMA__
     return _mm256_fmadd_ps(a, b, c);
@@ -97,7 +100,7 @@ template <class V>
 #endif
 }
 
-/// a * b + c with one rounding, on every CPU: the same bits everywhere, slowly where the CPU has no
+/// Returns a * b + c with one rounding, the same bits on every CPU. It is slow on a CPU that has no
 /// instruction for it.
 [[gnu::always_inline]] inline float fused(float a, float b, float c) {
 #ifdef __FMA__
@@ -115,8 +118,8 @@ template <class V>
 #endif
 }
 
-/// The nearest float of eight significant bits, even where there are two, and back: its upper half
-/// (bfloat16). Of finite floats below 2^127.
+/// Rounds a finite float below 2^127 to eight significant bits, half to even, and returns its upper
+/// half (bfloat16). from_half() converts back.
 [[gnu::always_inline]] inline std::uint16_t to_half(float x) {
     const auto bits = same_bits<std::uint32_t>(x);
     return static_cast<std::uint16_t>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
@@ -160,7 +163,7 @@ template <class V>
 }
 
 // ---- sets of lanes, as bits ----
-/// Bit i is set where all bits of v[i] are.
+/// Returns a set of bits: bit i is set where the lane v[i] is set.
 [[gnu::always_inline]] inline int lanes_set(Mask4 v) {
 #ifdef __AVX__
     return _mm256_movemask_pd(reinterpret_cast<Double4>(v));
@@ -168,7 +171,7 @@ template <class V>
     return static_cast<int>((v[0] & 1) | (v[1] & 2) | (v[2] & 4) | (v[3] & 8));
 #endif
 }
-/// Of what comparing Double2s or Double4s gives.
+/// Returns whether a comparison of two Double2 or Double4 holds in all lanes.
 template <class Mask>
 [[gnu::always_inline]] inline bool in_all_lanes(Mask v) {
     if constexpr (sizeof(v) == sizeof(Double2))
@@ -176,11 +179,11 @@ template <class Mask>
     else
         return lanes_set(same_bits<Mask4>(v)) == 15;
 }
-/// Whether a <= b in all lanes.
+/// Returns whether a <= b in all lanes.
 [[gnu::always_inline]] inline bool nowhere_above(float a, float b) { return a <= b; }
 [[gnu::always_inline]] inline bool nowhere_above(Float8 a, Float8 b);
 
-/// Bit i is set where a[i] <= b[i].
+/// Returns a set of bits: bit i is set where a[i] <= b[i].
 [[gnu::always_inline]] inline std::uint32_t not_above(Float8 a, Float8 b) {
 #ifdef __AVX__
     return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
@@ -195,7 +198,8 @@ template <class Mask>
     return not_above(a, b) == (1u << kLanes) - 1;
 }
 
-/// The numbers of the lanes whose bits are set, ascending, then zeros; by the bits.
+/// For each set of bits, this table holds the numbers of the lanes that are set, ascending, then
+/// zeros.
 inline constexpr auto kLanesSet = [] {
     std::array<std::array<std::uint8_t, kLanes>, 1 << kLanes> table{};
     for (std::size_t bits = 0; bits < table.size(); ++bits)
@@ -204,8 +208,8 @@ inline constexpr auto kLanesSet = [] {
     return table;
 }();
 
-/// Writes the lanes of v whose bits are set to `to`, one after the other, and anything after them:
-/// there must be room for all. Without a branch.
+/// Writes the lanes of v whose bits are set to `to`, one after the other, without a branch.
+/// Anything may be written after them: there must be room for all lanes.
 /// @param v   eight numbers of four bytes
 [[gnu::always_inline]] inline void store_set(const void* v, std::uint32_t bits, void* to) {
     const std::uint8_t* lanes = kLanesSet[bits].data();

@@ -10,20 +10,20 @@
 
 namespace tesserae {
 
-/// What bodies of one kind share (all bodies of a lattice are of one type).
+/// The properties that bodies of one type share; all bodies of a lattice are of one type.
 struct BodyType {
     Shape shape;
     double mass = 1;              ///< [kg]; unused for unbounded shapes
     double friction = 0.5;        ///< >= 0; a pair uses the geometric mean
     double rolling_friction = 0;  ///< [m], >= 0; a pair uses the larger, if it has friction
     double restitution = 0;       ///< 0 to 1; a pair uses the larger
-    bool fixed_position = false;  ///< contacts do not change its velocity (it moves at it)
+    bool fixed_position = false;  ///< contacts do not change its velocity, at which it moves
     bool fixed_rotation = false;  ///< contacts do not change its angular velocity
 
     friend bool operator==(const BodyType&, const BodyType&) = default;
 };
 
-/// Contacts can change the motion of its bodies.
+/// Returns whether contacts can change the motion of bodies of a type.
 inline bool is_movable(const BodyType& type) {
     return is_bounded(type.shape) && !(type.fixed_position && type.fixed_rotation);
 }
@@ -40,29 +40,30 @@ struct Bodies {
 
     std::size_t size() const { return type.size(); }
     const BodyType& type_of(BodyId id) const { return types[type[id]]; }
-    /// Contacts can change its motion.
+    /// Returns whether contacts can change the motion of a body.
     bool is_movable(BodyId id) const { return tesserae::is_movable(type_of(id)); }
 };
 
-/// Positions and rotors on the way from `before` to `after`, those of the same bodies later:
-/// positions linearly, rotors along the shortest way.
-/// @param part      0 to 1 of the way
-/// @param between   gets them, the rest of it stays; may be `before`
+/// Interpolates poses between two states of the same bodies: positions linearly, rotors along the
+/// shortest way.
+/// @param part      part of the way from `before` to `after`, 0 to 1
+/// @param between   gets the positions and rotors, the rest of it stays; may be `before`
 void interpolate_poses(const Bodies& before, const Bodies& after, double part, Bodies& between);
 
-/// How a body turns from one state to a later one: at the mean of both angular velocities, however
-/// many times round; what that leaves to the later rotor it turns the shortest way meanwhile.
+/// The turning of a body from one state to a later one. It turns at the mean of both angular
+/// velocities, possibly many times round. What this leaves to the later rotor it turns in addition,
+/// by the shortest way.
 struct Turning {
     Rotor begin;
-    Bivector half_angle;  ///< exp(-half_angle) turns by the velocities
-    Bivector rest;        ///< exp(rest) turns by what they leave
+    Bivector half_angle;  ///< exp(-half_angle) is the turning by the velocities
+    Bivector rest;        ///< exp(rest) is the remaining turning
 
-    /// @param part   0 to 1 of the way
+    /// Returns the rotor at a part of the way, 0 to 1.
     Rotor at(double part) const { return exp(part * rest) * exp(-part * half_angle) * begin; }
 };
 
+/// Returns the turning of a body between two states, or none if its rotor is the same in both.
 /// @param time   from `before` to `after` [s]
-/// @return none where the rotor is the same in both
 std::optional<Turning> turning(const Bodies& before, const Bodies& after, double time, BodyId id);
 
 }  // namespace tesserae

@@ -7,31 +7,34 @@
 
 namespace tesserae {
 
+/// Returns the friction coefficient of a pair: the geometric mean of both bodies' coefficients.
 double friction_of(const Simulation& simulation, BodyId a, BodyId b);
 
-/// Below this part of what the bodies' inverse masses allow, a response is rounding: nothing there
-/// can move (a sphere whose position is fixed, pushed through its centre) [1/kg].
+/// Returns the response of a pair [1/kg] below which it is only rounding and nothing can move, as
+/// when a sphere whose position is fixed is pushed through its centre.
 double least_response(const Simulation& simulation, BodyId a, BodyId b);
 
-/// Whether a body turns in the rest of the sub-step so that what a position correction has changed
-/// of its turning has much more energy when it is given back, see kGivenBack: a needle that was
-/// rolled a little about its length would be thrown across it.
-/// @param turning   with the correction [rad/s]
+/// Returns whether a position correction should not turn a body: as the body turns in the rest of
+/// the sub-step, taking the correction back would give much more energy than it cost, see
+/// kGivenBack. A needle that was rolled a little about its length would be thrown across it.
+/// @param turning     angular velocity with the correction [rad/s]
+/// @param corrected   the correction's part of it [rad/s]
 bool turns_correction(const Simulation& simulation, const StepData& step, BodyId id,
                       const Bivector& turning, const Bivector& corrected);
 
-/// The contact in the middle of the sub-step, but for what start_row() sets.
+/// Returns the row of a contact in the middle of the sub-step, without what start_row() sets.
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact);
 
-/// Its targets and impulses. Needs the velocities before the first impulse of the cause.
-/// @param place     of the contact in the list
-/// @param impulse   where to start from
-/// @param parting   of its pair
+/// Sets the targets and the first impulses of a row. Needs the velocities before the first impulse
+/// of the cause.
+/// @param place     place of the contact in the list
+/// @param impulse   impulse to start from
+/// @param parting   how the load of its pair takes overlap away
 void start_row(const Simulation& simulation, const StepData& step, const Contact& contact,
                std::size_t place, const ContactImpulse& impulse, Cause cause,
                const Parting& parting, ContactRow& row);
 
-/// The nearest impulse that friction allows.
+/// Returns the impulse nearest to a given one that friction allows: at most `radius` long.
 inline Vec4 clamped_to_ball(const Vec4& impulse, double radius) {
     const double squared = impulse.squaredNorm();
     return squared > radius * radius ? Vec4(radius / std::sqrt(squared) * impulse) : impulse;

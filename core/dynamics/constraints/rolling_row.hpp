@@ -4,20 +4,21 @@
 
 namespace tesserae {
 
-/// How far, as a part of a contact's normal impulse, the impulses against rolling and against
-/// twisting may each go [m]: the larger rolling friction, or 0 for a pair without friction, which
-/// touches by normal impulses alone.
+/// Returns the greatest angular impulse against rolling, and the same against twisting, per normal
+/// impulse of a contact [m]: the pair's larger rolling friction, or 0 for a pair without friction,
+/// which has normal impulses only.
 double rolling_arm_of(const Simulation& simulation, BodyId a, BodyId b);
 
-/// The row of a contact in the middle of the sub-step, but for its impulses.
+/// Returns the rolling row of a contact in the middle of the sub-step, without its impulses.
 RollingRow make_rolling_row(const Simulation& simulation, const StepData& step,
                             const ContactRow& contact);
 
-/// Its impulses, from those of the last normal: what is left of `impulse` [N m s, on b].
+/// Sets the first impulses of a rolling row: what the present normal and normal impulse leave of
+/// `impulse` [N m s, on b].
 void start_rolling_row(const ContactRow& contact, const Bivector& impulse, RollingRow& row);
 
-/// Rolling, then twisting, with the contact's normal impulse in force: each as friction does with
-/// the slip, see friction_impulse().
+/// Does one step for rolling, then one for twisting, with the contact's normal impulse in force.
+/// Each is done as friction does it for the slip, see friction_impulse().
 void solve_rolling_row(const Simulation& simulation, StepData& step, const ContactRow& contact,
                        RollingRow& row);
 
@@ -25,7 +26,7 @@ void solve_rolling_row(const Simulation& simulation, StepData& step, const Conta
 void apply_angular_impulse(const Simulation& simulation, StepData& step, BodyId a, BodyId b,
                            const Bivector& impulse);
 
-/// Both parts together [N m s, on b].
+/// Returns the angular impulse of both parts together [N m s, on b].
 Bivector angular_impulse_of(const ContactRow& contact, const RollingRow& row);
 
 }  // namespace tesserae

@@ -10,15 +10,15 @@
 namespace tesserae {
 
 /// A list that may be filled in parallel: each range of the input writes a list of its own, and
-/// these are put together in the order of the ranges, whoever came first. Its memory is kept.
+/// these lists are joined in the order of the ranges. Their memory is kept.
 ///
-/// It is filled in a few waves, so that what is held twice is a part of the whole.
+/// The list is filled in a few waves, so that only a part of it is in memory twice.
 template <class Item>
 class ChunkedList {
   public:
-    /// Calls fill(Range, std::vector<Item>& list) for every range; `all` becomes their results. It
-    /// should be those of the last time, or as many.
-    /// @param for_each_range   (count, grain, work): as that of Schedule
+    /// Calls fill(Range, std::vector<Item>& list) for every range and writes all results to `all`.
+    /// It is fastest if `all` has about as many items before.
+    /// @param for_each_range   (count, grain, work): as Schedule::for_each_range()
     template <class Loop, class Fill>
     void collect(const Loop& for_each_range, std::size_t count, std::size_t grain, const Fill& fill,
                  std::vector<Item>& all) {
@@ -40,9 +40,9 @@ class ChunkedList {
         all.resize(used);
     }
 
-    /// The same for any list.
-    /// @param append   (lists, ratio): puts lists behind what there is already; ratio is about that
-    ///                 of all items to those that there will be then
+    /// Calls fill() for every range, wave by wave, and append() after each wave.
+    /// @param append   (lists, ratio): appends the lists of a wave; ratio is about the number of
+    ///                 all items divided by the number after this wave
     template <class Loop, class Fill, class Append>
     void for_each_wave(const Loop& for_each_range, std::size_t count, std::size_t grain,
                        const Fill& fill, const Append& append) {
@@ -61,17 +61,17 @@ class ChunkedList {
         }
     }
 
-    /// Gives its memory back.
+    /// Gives the memory back.
     void release() { std::vector<std::vector<Item>>().swap(lists_); }
 
   private:
-    /// Ranges and items of the input that are worked on at once, at least, and how often it is
-    /// done, about: more waves take less memory, and threads wait for each other at the end of
+    /// The fewest ranges and items of the input in a wave, and the number of waves, about. Usual 8,
+    /// 4096 and 32. More waves take less memory, but threads wait for each other at the end of
     /// each.
     static constexpr std::size_t kChunks = 8, kItems = 4096, kWaves = 32;
 
     std::vector<std::vector<Item>> lists_;
-    std::vector<std::size_t> begin_;  ///< of each list in `all`, and the end
+    std::vector<std::size_t> begin_;  ///< each list's place in `all`, and the end
 };
 
 }  // namespace tesserae

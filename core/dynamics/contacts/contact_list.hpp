@@ -15,9 +15,9 @@
 
 namespace tesserae {
 
-/// Contacts in the order in which they are added. What the points of two bodies share is there
-/// once, and all but the first of them are seen from it, in float: rounding moves them by 6e-8 of
-/// how far apart they are. They are read as Contacts, by value.
+/// A list of contacts in the order in which they are added. Data that the points of two bodies
+/// share are stored once. All points but the first are stored relative to it, in float: rounding
+/// moves them by 6e-8 of their distance from it. They are read as Contacts, by value.
 class ContactList {
   public:
     class Iterator {
@@ -34,14 +34,14 @@ class ContactList {
         const ContactList* list_;
         std::size_t place_;
     };
-    /// Some that follow each other.
+    /// Contacts that follow each other.
     struct Part {
         Iterator first, last;
         Iterator begin() const { return first; }
         Iterator end() const { return last; }
     };
 
-    /// Contacts begin <= i < end, which have their bodies and their normal in common.
+    /// The contacts begin <= i < end, which share their bodies and their normal.
     struct Run {
         std::size_t begin, end;
         BodyId a, b;
@@ -49,7 +49,7 @@ class ContactList {
         std::size_t size() const { return end - begin; }
     };
 
-    /// All contacts [begin, end) of one pair give way to others of it.
+    /// The replacement of all contacts [begin, end) of one pair by others.
     struct Replacement {
         std::size_t begin, end;
         std::span<const Contact> by;
@@ -75,13 +75,13 @@ class ContactList {
                 no_internal_edge.seen_from,
                 no_internal_edge.points};
     }
-    /// The run that a contact is in, from that contact on, up to `limit` at most. Stages that need
-    /// little of each point go from run to run.
+    /// Returns the run of a contact, from that contact on and at most up to `limit`. Stages that
+    /// need little of each point go from run to run.
     Run run(std::size_t i, std::size_t limit) const {
         const std::uint32_t place = place_of_shared_[i];
         return {i, std::min(end_of_run(place), limit), heads_[place].a, heads_[place].b};
     }
-    /// Fetches ahead what a contact shares, which is asked for first.
+    /// Fetches ahead the data that a contact shares, which are read first.
     [[gnu::always_inline]] void prefetch(std::size_t i) const {
         const std::uint32_t place = place_of_shared_[i];
         const auto* const shared = reinterpret_cast<const char*>(&shared_[place]);
@@ -89,14 +89,14 @@ class ContactList {
         __builtin_prefetch(shared);
         __builtin_prefetch(shared + sizeof(Shared) - 1);
     }
-    /// All runs, and one of them by its number.
+    /// Returns the number of all runs; nth_run() returns one of them.
     std::size_t run_count() const { return shared_size_; }
     Run nth_run(std::size_t n) const {
         return {heads_[n].first, end_of_run(n), heads_[n].a, heads_[n].b};
     }
-    /// The number of the run that a contact is in.
+    /// Returns the number of the run that a contact is in.
     std::uint32_t run_of(std::size_t i) const { return place_of_shared_[i]; }
-    /// Behind the last contact of the pair that contact i is of.
+    /// Returns the end of the contacts of the pair of contact i.
     std::size_t end_of_pair(std::size_t i) const {
         std::size_t end = i;
         do end = run(end, size_).end;
@@ -107,8 +107,8 @@ class ContactList {
         const Head& head = heads_[place_of_shared_[i]];
         return {head.a, head.b};
     }
-    /// The pair's Contact::no_internal_edge, if contacts [begin, end) are all the points that it is
-    /// of.
+    /// Returns the pair's Contact::no_internal_edge if contacts [begin, end) are all the points for
+    /// which it was found, else 0.
     unsigned no_internal_edge(std::size_t begin, std::size_t end) const {
         const NoInternalEdge& no_internal_edge = no_internal_edges_[place_of_shared_[begin]];
         return no_internal_edge.points == end - begin ? no_internal_edge.seen_from : 0u;
@@ -133,7 +133,7 @@ class ContactList {
     Iterator begin() const { return {*this, 0}; }
     Iterator end() const { return {*this, size_}; }
 
-    /// Empties it, with memory for about as many contacts as there were.
+    /// Empties the list and keeps memory for about as many contacts as there were.
     void restart() {
         prepare(place_of_shared_, size_);
         prepare(heads_, shared_size_);
@@ -154,9 +154,9 @@ class ContactList {
         }
         write(contact, {size_++, shared_size_ - 1}, !is_shared);
     }
-    /// Adds lists one behind the other, of which no two have contacts of the same two bodies.
-    /// @param for_each_range   (count, grain, work): as that of Schedule
-    /// @param ratio            of all contacts to those that there will be then, about
+    /// Appends lists one behind the other. No two of them may have contacts of the same two bodies.
+    /// @param for_each_range   (count, grain, work): as Schedule::for_each_range()
+    /// @param ratio            number of all contacts divided by the number after this, about
     template <class Loop>
     void append(const Loop& for_each_range, std::span<const std::vector<Contact>> lists,
                 double ratio) {
@@ -177,7 +177,8 @@ class ContactList {
         shared_size_ = starts_.back().shared;
     }
 
-    /// In place: a second list of all contacts would be a tenth of what a step takes.
+    /// Does replacements in place: a second list of all contacts would be a tenth of a step's
+    /// memory.
     /// @param all   ascending
     void replace(std::span<const Replacement> all) {
         moves_.clear(), starts_.clear();
@@ -211,41 +212,44 @@ class ContactList {
     }
 
   private:
-    /// What points share, in two: many stages go through all contacts and need the first only.
+    /// The first part of the data that points share: many stages go through all contacts and need
+    /// this part only.
     struct Head {
         BodyId a, b;
         std::uint32_t first;    ///< place of the first point
-        std::uint32_t feature;  ///< of that
+        std::uint32_t feature;  ///< of the first point
     };
+    /// The second part of the data that points share.
     struct Shared {
         PackedVec4 normal;
-        PackedVec4 place;  ///< of the first point, with:
+        PackedVec4 place;  ///< of the first point
         double separation;
     };
-    /// See Contact.
+    /// The members of Contact about internal edges.
     struct NoInternalEdge {
         std::uint8_t seen_from = 0, points = 0;
     };
     /// A point that is not the first.
     struct Further {
         std::array<float, 4> from_first;          ///< [m]
-        std::array<std::uint32_t, 2> separation;  ///< a double's bits, which need no alignment here
+        std::array<std::uint32_t, 2> separation;  ///< a double's bits, without its alignment
         std::uint32_t feature;
     };
-    /// Places of a list's first contact and of what it shares. That of the first further point is
-    /// their difference.
+    /// The places of a list's first contact and of its shared data. The place of the first Further
+    /// is their difference.
     struct Start {
         std::size_t point, shared;
     };
 
-    /// Those from `begin` to `end` go so far up, or down where it wraps.
+    /// A move of the contacts from `begin` to `end` by `way` places; where `way` wraps, they go
+    /// down.
     struct Move {
         Start begin, end, way;
     };
 
-    /// What goes down does so from the first to the last, what goes up the other way round: nothing
-    /// is written over that has still to move.
-    /// @param place_in   of a Start in `items`
+    /// Moves items. Those that go down are moved from the first to the last, those that go up from
+    /// the last to the first, so that none is overwritten before it has moved.
+    /// @param place_in   returns the place of a Start in `items`
     template <class Item, class PlaceIn, class Mend>
     void move(std::vector<Item>& items, const PlaceIn& place_in, const Mend& mend) {
         const auto move_one = [&](const Move& m, std::size_t i) {
@@ -267,7 +271,7 @@ class ContactList {
     std::size_t end_of_run(std::size_t n) const {
         return n + 1 < shared_size_ ? heads_[n + 1].first : size_;
     }
-    /// Place of a point that is not the first: so many come before it, less the first ones.
+    /// Returns the place in further_ of a point that is not the first of its run.
     std::size_t further_at(std::size_t i) const { return i - place_of_shared_[i] - 1; }
     void grow_to(Start end, double ratio) {
         grow(place_of_shared_, size_, end.point, ratio);
@@ -277,12 +281,12 @@ class ContactList {
         grow(further_, size_ - shared_size_, end.point - end.shared, ratio);
     }
 
-    /// Place of what a contact shares; also of the end.
+    /// Returns the place of a contact's shared data, also for the end.
     std::size_t shared_at(std::size_t i) const {
         return i < size_ ? place_of_shared_[i] : shared_size_;
     }
     static std::uint32_t place_of(std::size_t i) { return static_cast<std::uint32_t>(i); }
-    /// As one vector: by number it would be four branches.
+    /// Compares the normals as one vector: number by number it would be four branches.
     static bool have_same_normal(const Contact& c, const Contact& d) {
         simd::Double4 n, m;
         std::memcpy(&n, c.normal.data(), sizeof n);
@@ -320,10 +324,10 @@ class ContactList {
         further.feature = c.feature;
     }
 
-    // Those that are used come first. What lies behind them stays, to be written over.
+    // The used items come first. The items behind them stay, to be overwritten.
     std::size_t size_ = 0, shared_size_ = 0;
     std::vector<std::uint32_t> place_of_shared_;  ///< of every contact
-    std::vector<Head> heads_;                     ///< of every run; likewise:
+    std::vector<Head> heads_;                     ///< of every run; so are the next two
     std::vector<Shared> shared_;
     std::vector<NoInternalEdge> no_internal_edges_;
     std::vector<Further> further_;

@@ -8,41 +8,43 @@
 
 namespace tesserae {
 
-/// All contacts of a body with one other: [begin, end) of the list.
+/// All contacts of a body with one other body: [begin, end) of the list.
 struct Meeting {
     BodyId body, other;
     std::uint32_t begin, end;
-    bool may_be_internal_edge = false;  ///< as the function says
+    bool may_be_internal_edge = false;  ///< see the function of this name
 };
 
-/// Whether the two bodies alone leave it open that the meeting is an internal edge: its points do
-/// not lie straight over one face of the other body, or they do and all near one of its rims.
+/// Returns whether a meeting may be an internal edge as far as its two bodies show: its points do
+/// not all lie straight over one face of the other body, or they do, but all near one of its rims.
 bool may_be_internal_edge(const Simulation& simulation, const StepData& step,
                           const Meeting& meeting);
 
-/// Whether that stays false while the two bodies move by kKeptMotion against each other.
-/// @param shape    the other body's; it has `normal`, out of it, and `points`, all of them, in its
-///                 own frame
+/// Returns whether may_be_internal_edge() stays false while the two bodies move by kKeptMotion
+/// relative to each other.
+/// @param shape    the other body's shape; its outward `normal` and all `points` are in its own
+///                 frame
 bool is_never_internal_edge(const Shape& shape, const Vec4& normal, std::span<const Vec4> points,
                             const TypeProperties& body);
 
-/// Contacts [begin, end) of the list give way to [first, last) of EdgeJudge::contacts.
+/// The replacement of contacts [begin, end) of the list by [first, last) of EdgeJudge::contacts.
 struct EdgeCorrection {
     std::uint32_t begin, end;
     std::uint32_t first, last;
-    double cosine;  ///< of the angle by which the normal is turned, at most
+    double cosine;  ///< of the greatest angle by which a normal is turned
 };
 
-/// Sees a body with all that it meets. What it lies on, on a face, is its ground.
+/// Finds and corrects the internal edges of one body from all that it meets. The bodies on whose
+/// faces it lies are its ground.
 ///
-/// - Faces of the ground in one plane that do not move: the body has the contacts that it would
-///   have with a hyperplane there, each with the body under it, if there is one under all of them.
+/// - If faces of the ground lie in one plane and do not move, the body gets the contacts that it
+///   would have with a hyperplane there. Each is with the body under it, if each of them has one.
 /// - Otherwise a meeting is an internal edge if all its points are on or under the plane of the
-/// ground's
-///   face, but push another way: lifted out of the ground, the body would not touch there. It is
-///   given the points over the other body's own face along the plane, or over one that rises from
-///   the plane there as a floor that does not move does from a ramp, if there is one, else none.
-///   Only ground whose own meeting is no internal edge tells so: no body is left without.
+///   ground's face but push in another direction: lifted out of the ground, the body would not
+///   touch there. Its points are replaced by those over the other body's own face along the plane,
+///   or over a face that rises from the plane there, as a fixed floor rises from a ramp; without
+///   such a face they are dropped. Only ground whose own meeting is no internal edge counts, so
+///   that no body loses all contacts.
 class EdgeJudge {
   public:
     std::vector<EdgeCorrection> corrections;
@@ -50,7 +52,7 @@ class EdgeJudge {
 
     void clear();
     /// Appends the corrections of one body's contacts.
-    /// @param meetings   all that it has, ascending
+    /// @param meetings   all meetings of the body, ascending
     void judge(const Simulation& simulation, const StepData& step,
                std::span<const Meeting> meetings);
 
@@ -58,12 +60,12 @@ class EdgeJudge {
     struct Ground {
         const Meeting* meeting;
         Face face;              ///< world
-        bool is_internal_edge;  ///< as other ground tells
+        bool is_internal_edge;  ///< as other ground shows
     };
     struct Floor {
         const Meeting* meeting;
         Face face;
-        std::uint32_t points;  ///< bit i: of on_plane_ it is under the i-th
+        std::uint32_t points;  ///< bit i: it is under the i-th of on_plane_
     };
 
     void find_ground(const Simulation& simulation, const StepData& step,

@@ -6,12 +6,13 @@
 
 namespace tesserae {
 
-/// The last part of the narrow phase: bodies go over faces that lie in one plane as over one face.
+/// Corrects contacts at internal edges, the last part of the narrow phase: bodies slide over faces
+/// that lie in one plane as over one face.
 ///
-/// The narrow phase looks at two bodies at a time. A box that has sunk into a tile by a hair meets
-/// the next tile's side with less overlap than its top, a ball is nearer to that tile's edge than
-/// to the plane of its top, and such contacts push along the floor. EdgeJudge sees all that a body
-/// meets; here the bodies are found that it has to look at.
+/// The narrow phase looks at two bodies at a time. A box that has sunk a little into a tile
+/// overlaps the next tile's side by less than its top, and a ball is nearer to that tile's edge
+/// than to the plane of its top. Such contacts push along the floor. This class finds the bodies
+/// for which EdgeJudge has to look at all that they meet.
 class InternalEdges {
   public:
     /// Corrects step.contacts.
@@ -24,7 +25,7 @@ class InternalEdges {
 
     ChunkedList<Meeting> lists_;
     std::vector<Meeting> meetings_;        ///< ascending (body, begin)
-    std::vector<std::uint8_t> is_marked_;  ///< of every body: the judge has to look at it
+    std::vector<std::uint8_t> is_marked_;  ///< of every body: EdgeJudge has to look at it
     EdgeJudge judge_;
     std::vector<ContactList::Replacement> replacements_;
 };

@@ -7,34 +7,35 @@
 
 namespace tesserae {
 
-/// step.company: how many other bodies that contacts move each one touches, up to two. What carries
-/// or leans on others does not roll freely.
+/// Writes step.company: the number of other movable bodies that each body touches, up to two. A
+/// body that carries or leans on others does not roll freely.
 void count_company(const Simulation& simulation, StepData& step);
 
-/// step.rises and step.rim_slips of the contacts of the runs in the range.
+/// Writes step.rises and step.rim_slips of the contacts of the runs in the range.
 ///
-/// As a round body turns, the point at which it touches runs along its rim: that of a coin that
-/// wobbles down many times faster than its material moves there. Between the middles of two
+/// As a round body turns, the point at which it touches runs along its rim; on a coin that wobbles
+/// down it runs many times faster than the material moves there. Between the middles of two
 /// sub-steps the surfaces come nearer than the points do that touch in the first, and the rim sinks
-/// in; friction that ends the slip of these points, not of those that come to touch, drives it on.
-/// So both aims are those of the way from one middle to the next, as the body turns freely: of
-/// second order in the time step, and, as they look the same backwards in time, without gain or
-/// loss of energy on the whole. Along the normal that is SHAKE (Ryckaert, Ciccotti, Berendsen, J.
+/// in. Friction that ends the slip of these points, not of those that touch next, drives the body
+/// on. So both aims are for the way from one middle to the next, as the body turns freely. They are
+/// of second order in the time step. They are the same backwards in time, so that energy is neither
+/// gained nor lost on the whole. Along the normal this is SHAKE (Ryckaert, Ciccotti, Berendsen, J.
 /// Comput. Phys. 23, 1977).
 void aim_rims(const Simulation& simulation, StepData& step, Range runs);
 
-/// What the point of a rim ahead is called: after all other points of a pair.
+/// The feature of a rim's point ahead, see add_rim_ahead(): it comes after all other points of a
+/// pair.
 constexpr std::uint32_t kRimAhead = 0xffffffff;
 
-/// Appends to a pair's contacts, which begin at `first`, the point of a body that rolls on the
-/// other which will lie deepest in that a sub-step later, if those that there are, without their
-/// rises, let it sink in by more than is ever left alone: rises bring bodies up no faster than they
-/// come down, and a disc as thin as that would be stopped in the air (see Impacts). Its separation
-/// is such that it comes to where it will be at its present velocity.
+/// Appends to a pair's contacts, which begin at `first`, the point of a rolling body that will lie
+/// deepest in the other one a sub-step later, if the present points, without their rises, would let
+/// it sink in by more than the solver ever leaves alone. Rises bring bodies up no faster than they
+/// come down, and a disc as thin as that would be stopped in the air (see FastBodies). The point's
+/// separation is such that its present velocity brings it to where it will be.
 void add_rim_ahead(const Simulation& simulation, const StepData& step, const BodyPair& pair,
                    std::size_t first, std::vector<Contact>& list);
-/// The same of a body's contacts, as the first one of a pair, with a hyperplane in the place of the
-/// ground's face.
+/// Appends the same point to a body's contacts with a hyperplane in the place of the ground's face.
+/// The body is the first one of the pair.
 void add_rim_ahead_on_plane(const Simulation& simulation, const StepData& step, BodyId id,
                             BodyId ground, std::vector<Contact>& list);
 

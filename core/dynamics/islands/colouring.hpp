@@ -4,22 +4,22 @@
 
 namespace tesserae {
 
-/// Colours the pairs of bodies of large islands and makes batches of them: no two pairs of a colour
+/// Colours the pairs of bodies of large islands and makes batches of them. No two pairs of a colour
 /// share a movable body, so that any number of threads may solve them at once and get the same
 /// bits.
 class Colouring {
   public:
     /// Empties step.coloured.
     void begin(const Simulation& simulation, StepData& step);
-    /// Adds the island, the next one that is coloured.
+    /// Adds an island, which becomes the next coloured one.
     void add(const Simulation& simulation, StepData& step, std::size_t island);
-    /// Sizes the rows.
+    /// Sizes the rows of all coloured islands.
     void end(StepData& step);
 
   private:
     /// The contacts of two bodies, which follow each other in StepData::contacts.
     struct Pair {
-        std::uint32_t contact;  ///< the first
+        std::uint32_t contact;  ///< the first one
         std::uint16_t bucket;
         std::uint8_t points;
     };
@@ -31,11 +31,11 @@ class Colouring {
     BatchRange add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
                            std::vector<Batch>& batches) const;
 
-    std::vector<std::uint32_t> place_;  ///< of every body in ColouredIslands::bodies, or 0
-    std::vector<std::uint64_t> used_;   ///< colours of each of these so far, a bit each
-    std::vector<Pair> pairs_;           ///< of the island at hand
-    std::vector<std::uint32_t> order_;  ///< of their numbers, by buckets
-    std::vector<std::uint32_t> start_;  ///< of each bucket in it, and an end
+    std::vector<std::uint32_t> place_;  ///< each body's place in ColouredIslands::bodies, or 0
+    std::vector<std::uint64_t> used_;  ///< colours that each of these bodies has so far, a bit each
+    std::vector<Pair> pairs_;          ///< of the present island
+    std::vector<std::uint32_t> order_;  ///< numbers of these pairs, by buckets
+    std::vector<std::uint32_t> start_;  ///< start of each bucket in order_, and the end
 };
 
 }  // namespace tesserae

@@ -8,22 +8,23 @@
 
 namespace tesserae {
 
-/// Impacts of large islands, of which they concern a few contacts only: in a heap of 10^4 spheres
-/// that has settled one or two fall into a gap in every step. They are solved among the contacts
-/// near them, in double, as small islands are, and the rest of the island sees nothing of them
-/// unless they reach out of there: then it is solved as a whole.
+/// Solves impacts of large islands among the contacts near them, in double, as small islands are
+/// solved. Most impacts concern a few contacts only: in a settled heap of 10^4 spheres, one or two
+/// fall into a gap in every step. The rest of the island is not touched, unless an impact reaches
+/// out of its patch: then the whole island is solved.
 class ImpactPatches {
   public:
-    /// Adds them to step.islands, behind the others, with rows of their own.
-    /// @param hits   contacts that are impacts
+    /// Adds the patches to step.islands, behind the others, with rows of their own.
+    /// @param hits   the contacts that are impacts
     void begin(const Simulation& simulation, StepData& step,
                std::span<const std::vector<std::uint32_t>> hits);
-    /// Takes them from there again once they are solved.
-    /// @return whether impacts of other islands remain to be solved, see StepData::awaits
+    /// Removes the patches from step.islands once they are solved.
+    /// @return whether islands remain whose impacts have to be solved as a whole, see
+    /// StepData::awaits
     bool end(const Simulation& simulation, StepData& step);
 
   private:
-    /// Of one island.
+    /// The patches of one island.
     struct Patched {
         std::size_t island;
         Range motions, rim, runs;  ///< in motions_, rim_ and step.islands.runs
@@ -51,13 +52,13 @@ class ImpactPatches {
 
     std::vector<std::uint8_t> hit_;          ///< of every body
     std::vector<std::uint8_t> near_, next_;  ///< of every place in ColouredIslands::bodies
-    std::vector<std::uint32_t> parent_;      ///< likewise; a root is a patch
+    std::vector<std::uint32_t> parent_;      ///< of every such place; a root is a patch
     std::vector<Pair> pairs_;
-    std::vector<std::uint32_t> rim_;  ///< contacts of a body that is in a patch and one that is not
-    std::vector<Motion> motions_;     ///< before the impact, of the bodies in patches
+    std::vector<std::uint32_t> rim_;  ///< contacts between a body in a patch and one outside
+    std::vector<Motion> motions_;     ///< motion of the bodies in patches before the impact
     std::vector<Patched> patched_;
-    std::size_t islands_ = 0, runs_ = 0;  ///< without the patches
-    std::size_t rows_ = 0;                ///< with them
+    std::size_t islands_ = 0, runs_ = 0;  ///< their numbers without the patches
+    std::size_t rows_ = 0;                ///< number with the patches
 };
 
 }  // namespace tesserae

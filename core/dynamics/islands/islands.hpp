@@ -6,11 +6,11 @@
 
 namespace tesserae {
 
-/// Contacts from which on an island is coloured.
+/// The numbers of contacts from which an island is coloured.
 struct ColouredFrom {
-    std::uint32_t held = kColouredFrom;      ///< where a body touches one that contacts do not move
-    std::uint32_t unequal = 1;               ///< there, if masses differ so much: kUnequalMasses
-    std::uint32_t free = kFreeColouredFrom;  ///< elsewhere
+    std::uint32_t held = kColouredFrom;      ///< if some body touches one that contacts do not move
+    std::uint32_t unequal = 1;               ///< of these, if masses differ by kUnequalMasses
+    std::uint32_t free = kFreeColouredFrom;  ///< if nothing holds the island
 
     ColouredFrom() = default;
     ColouredFrom(std::uint32_t both)
@@ -23,8 +23,8 @@ class IslandBuilder {
     /// @param coloured_from   for tests and measurements
     explicit IslandBuilder(ColouredFrom coloured_from = {}) : coloured_from_(coloured_from) {}
 
-    /// step.islands, and the rows and batches of their contacts from step.contacts, every one of
-    /// which has a movable body.
+    /// Builds step.islands, and the rows and batches of their contacts, from step.contacts. Every
+    /// contact must have a movable body.
     void build(const Simulation& simulation, StepData& step);
 
   private:

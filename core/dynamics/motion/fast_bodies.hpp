@@ -10,26 +10,26 @@
 
 namespace tesserae {
 
-/// Keeps bodies from passing through each other on their way through a half of a sub-step.
+/// Keeps fast bodies from passing through others in a half of a sub-step.
 ///
 /// Contacts are found in the middle of a sub-step, where a fast body may be beyond what it has hit.
 /// A pair that would pass is stopped where it first touches; both bodies lose the rest of the half.
-/// What is stopped may be in the way of others, or leave the way of none, and so the impacts are
-/// taken in the order of their times, and what a stopped body may meet is looked at again.
+/// A stopped body may get in the way of others or no longer reach them. So impacts are taken in the
+/// order of their times, and the pairs of a stopped body are looked at again.
 class FastBodies {
   public:
     enum class Half { kFirst, kSecond };
 
-    /// Moves what has to stop back to where it stops. The bodies' energy stays: gravity takes from
-    /// or gives to a speed what it has not done on the way that is lost.
-    /// @param step   as after the half; step.pairs: all that meet in it
+    /// Moves bodies that have to stop back to where they stop. Their energy stays: speeds are
+    /// changed by the work of gravity on the way that is lost.
+    /// @param step   as after the half; step.pairs are all bodies that meet in it
     void stop(const Simulation& simulation, StepData& step, Schedule& schedule, Half half);
 
   private:
     /// Two bodies of which one is fast.
     struct Candidate {
         BodyId a, b;
-        double time;  ///< of their impact [s], or kNoImpact
+        double time;  ///< time of their impact [s], or kNoImpact
     };
     struct Impact {
         double time;
@@ -43,9 +43,9 @@ class FastBodies {
     double look_at(const Simulation& simulation, const StepData& step, const Candidate& candidate,
                    double from, std::vector<Contact>& scratch) const;
 
-    std::vector<std::uint8_t> is_fast_;          ///< of every body
-    std::vector<double> stop_;                   ///< of every body [s], or kNoImpact
-    std::vector<std::vector<Contact>> scratch_;  ///< of every range of pairs
+    std::vector<std::uint8_t> is_fast_;  ///< of every body
+    std::vector<double> stop_;           ///< time at which every body stops [s], or kNoImpact
+    std::vector<std::vector<Contact>> scratch_;  ///< one for every range of pairs
     ChunkedList<Candidate> lists_;
     std::vector<Candidate> candidates_;                  ///< ascending (a, b)
     std::vector<std::pair<BodyId, std::uint32_t>> met_;  ///< each body's candidates, ascending

@@ -9,15 +9,14 @@
 
 namespace tesserae {
 
-/// A body's free motion over a half of a sub-step, and when it is stopped on its way.
+/// The free motion of a body over a half of a sub-step, and when it is stopped on its way.
 class FreePath {
   public:
-    /// The path on which the body has come to where it is now, at the velocities that it has now:
-    /// back along them, since free motion can be reversed (to second order with
-    /// RotationIntegrator::kEuler).
+    /// Finds the path that led the body to its present pose, back along its present velocities:
+    /// free motion can be reversed (to second order with RotationIntegrator::kEuler).
     FreePath(const Simulation& simulation, const StepData& step, BodyId id);
 
-    /// From this time on [s] it stays where it is.
+    /// Stops the body from this time on [s].
     void stop(double time) { stop_ = time; }
     bool moves(double time) const { return time < stop_; }
 
@@ -26,17 +25,17 @@ class FreePath {
         Rotor rotor;
         Bivector angular_velocity;
     };
-    /// @param time   since the half began [s]
+    /// Returns the body's state at a time since the half began [s].
     State at(double time) const;
 
     BodyId id() const { return id_; }
     const Shape& shape() const { return *shape_; }
-    /// The least half-size [m]; infinite if unbounded.
+    /// The body's least half-size [m]; infinite if unbounded.
     double half_size() const { return type_->slop / kSlop; }
     const Vec4& velocity() const { return velocity_; }
-    /// Turning moves no point of the surface towards another body faster than this [m/s].
+    /// Bound of the speed at which turning moves a point of the surface towards another body [m/s].
     double spin() const { return spin_; }
-    /// Nor speeds it up by more than this [m/s^2].
+    /// Bound of the acceleration of such a point by turning [m/s^2].
     double swing() const { return swing_; }
     double duration() const { return duration_; }
 
@@ -54,8 +53,8 @@ class FreePath {
     State start_;
 };
 
-/// Whether a body can get so far in half a sub-step, at the speed that it has, that another may
-/// have to be kept from passing through it.
+/// Returns whether a body moves so far in half a sub-step, at its present speed, that it might pass
+/// through another body.
 inline bool is_fast(const Simulation& simulation, const StepData& step, BodyId id) {
     const TypeProperties& type = simulation.type_of(id);
     if (!type.bounded) return false;
@@ -71,15 +70,17 @@ inline bool is_fast(const Simulation& simulation, const StepData& step, BodyId i
 
 constexpr double kNoImpact = std::numeric_limits<double>::infinity();
 
-/// When a body has to be stopped, so that it does not pass through another.
+/// Returns the time at which two bodies have to be stopped so that they do not pass through each
+/// other.
 ///
-/// That is where it first touches the other: both are kTouch of twice their least half-size apart,
-/// or overlap so much more than at `from`. Only what would come to overlap by more than kDeepest of
-/// it is stopped: what slides, rolls or spins on another body is not, nor is what hits it slowly.
-/// Conservative advancement (Mirtich 1996) along the normals that the pair's contact function
-/// finds: the gap along a fixed normal is a lower bound of the distance, whatever the shapes.
-/// @param from      time since the half began [s]; both are known not to pass before it
-/// @param scratch   its memory is used
+/// At this time they first touch: they are kTouch of twice their least half-size apart, or overlap
+/// so much more than at `from`. They are stopped only if they would overlap by more than kDeepest
+/// of the same size, so bodies that slide, roll or spin on each other or hit slowly are not. The
+/// method is conservative advancement (Mirtich 1996) along the normals that the pair's contact
+/// function finds: the gap along a fixed normal is a lower bound of the distance, whatever the
+/// shapes.
+/// @param from      time since the half began [s]; the bodies are known not to pass before it
+/// @param scratch   a list whose memory is used
 /// @return [s], from <= t <= duration, or kNoImpact
 double impact_time(const FreePath& a, const FreePath& b, double from,
                    std::vector<Contact>& scratch);

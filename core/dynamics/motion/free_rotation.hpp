@@ -5,26 +5,27 @@
 
 namespace tesserae {
 
-/// Turns a body freely for a time h [s]: its angular momentum in the world stays, so that its
+/// Turns a body freely for a time h [s]. Its angular momentum in the world stays, so that its
 /// angular velocity changes with the rotor (the gyroscopic term). A body with equal inertia in all
 /// planes, or with a fixed rotation, turns at a constant angular velocity, exactly.
 ///
-/// kMidpoint is the implicit midpoint rule for the angular momentum in the body frame: energy,
-/// |L|^2 and L ^ L are quadratic in it and stay, to rounding, at any step
-/// (FreeRotation.ByMidpointKeepsAllInvariants); the orientation is of second order, and exact where
+/// kMidpoint is the implicit midpoint rule for the angular momentum in the body frame. Energy,
+/// |L|^2 and L ^ L are quadratic in it and are kept to rounding at any step
+/// (FreeRotation.ByMidpointKeepsAllInvariants). The orientation is of second order, and exact where
 /// the rotation is steady. Source: Austin, Krishnaprasad, Wang, "Almost Poisson integration of
 /// rigid body systems", 1993, here for the two quaternions of Spin(4). kEuler is of first order and
 /// keeps |L|^2 and L ^ L only.
-/// @param omega   world [rad/s]
+/// @param omega   angular velocity, world [rad/s]
 void turn_freely(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
                  Bivector& omega);
 
+/// A body that turns freely.
 struct FreeBody {
     const TypeProperties& type;
     Rotor& rotor;
     Bivector& omega;
 };
-/// The same of two bodies, to the bit, in less time.
+/// Turns two bodies freely, with the same bits as one after the other but in less time.
 void turn_freely(const FreeBody& a, const FreeBody& b, RotationIntegrator integrator, double h);
 
 }  // namespace tesserae

@@ -8,10 +8,11 @@
 
 #include "core/dynamics/solver/kernels/kernels.hpp"
 
-// A coloured island as its passes see it: bodies and colours.
+// A coloured island as the passes of the solver see it: its bodies and colours.
 namespace tesserae {
 
-/// Does the parts of a pass one after the other; parallel/ has one that uses all threads.
+/// Does the parts of a pass one after the other. In parallel/ there is a class with the same
+/// functions that uses all threads.
 struct OneThread {
     /// Calls work(Range) for pieces of the bodies.
     template <class Work>
@@ -19,20 +20,20 @@ struct OneThread {
         work(bodies);
     }
     /// Calls work(BatchRange) for pieces of the batches.
-    /// @param points   of a batch, about
+    /// @param points   about how many points a batch has
     template <class Work>
     void for_batches(BatchRange batches, std::size_t /*points*/, const Work& work) const {
         if (batches.begin < batches.end) work(batches);
     }
-    /// The same with results, of which it returns the largest, at least 0.
+    /// Calls work(BatchRange) for pieces of the batches and returns the largest result, at least 0.
     template <class Work>
     double largest(BatchRange batches, std::size_t /*points*/, const Work& work) const {
         return batches.begin < batches.end ? work(batches) : 0;
     }
 };
 
-/// Calls work(place, Range) for the pieces of a range, see kSumPiece: the same for any number of
-/// threads.
+/// Calls work(place, Range) for the pieces of kSumPiece bodies in a range. The pieces are the same
+/// for any number of threads.
 template <class Threads, class Work>
 void for_pieces(const Threads& threads, Range all, const Work& work) {
     threads.for_bodies(all, [&](Range some) {
@@ -40,7 +41,7 @@ void for_pieces(const Threads& threads, Range all, const Work& work) {
             work((i - all.begin) / kSumPiece, Range{i, std::min(i + kSumPiece, some.end)});
     });
 }
-/// What work(Range) returns of them, in their order.
+/// Returns the results of work(Range) for the pieces of a range, in their order.
 template <class Threads, class Work>
 auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
     std::vector<decltype(work(all))> results((all.end - all.begin + kSumPiece - 1) / kSumPiece);
@@ -48,26 +49,30 @@ auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
     return results;
 }
 
-/// The records of the bodies in the range (places in ColouredIslands::bodies), unchanged yet.
+/// Starts the records of changes of the bodies in the range (places in ColouredIslands::bodies):
+/// nothing has changed yet.
 void begin_changes(const ColouredStage& stage, Range bodies);
-/// step.impact_motion of the bodies: with the changes of the compression, not added yet.
+/// Writes the bodies' step.impact_motion after the compression, whose changes are not added yet.
 void keep_impact_motion(const ColouredStage& stage, Range bodies);
-/// Twice their kinetic energy [J] before the compression and after it, whose changes are not added
-/// yet; see has_jammed().
+/// Returns twice the bodies' kinetic energy [J] before the compression and after it; its changes
+/// are not added yet. See has_jammed().
 std::array<double, 2> energies_of_compression(const ColouredStage& stage, Range bodies);
-/// Adds the changes to the velocities.
+/// Adds the bodies' changes to their velocities.
 void add_changes(const ColouredStage& stage, Range bodies);
-/// Takes from them the warm start, see take_warm_start().
+/// Takes the warm start from the bodies' velocities again, see take_warm_start().
 void take_warm_start_back(const ColouredStage& stage, Range bodies);
 
-/// Of the changes: twice their kinetic energy [J], and a part of them.
+/// Returns twice the kinetic energy of the bodies' changes [J].
 double energy_of_changes(const ColouredStage& stage, Range bodies);
+/// Multiplies the bodies' changes by a part.
 void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part);
 
-/// Keeps the changes of the load; does not turn bodies of which turns_correction() says so; takes
-/// back what the correction changed.
+/// Keeps the bodies' changes by the load, before the sweeps of a position correction.
 void begin_correction(const ColouredStage& stage, Range bodies);
+/// Ends the sweeps of a position correction: bodies for which turns_correction() is true are not
+/// turned by it.
 void end_correction(const ColouredStage& stage, Range bodies);
+/// Takes back the velocities of the position correction, once the bodies have moved.
 void take_correction_back(const ColouredStage& stage, Range bodies);
 
 /// One coloured island and its colours.
@@ -79,7 +84,7 @@ class ColouredIsland {
           place_(step.islands.coloured[island]),
           stage_{simulation, step, all_.mass_unit[place_]} {}
 
-    /// What follows is for this cause. Rows that an impact has made stay for the load.
+    /// Sets the cause that the next passes solve. Rows that an impact has made stay for the load.
     void begin(Cause cause) {
         stage_.cause = cause;
         stage_.parting = parting_of(stage_.step, number_);
@@ -90,15 +95,15 @@ class ColouredIsland {
     const ColouredStage& stage() const { return stage_; }
     std::size_t number() const { return number_; }  ///< among all islands
     Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
-    /// Of pieces of them, see kSumPiece.
+    /// The sums of the pieces of kSumPiece bodies.
     std::span<BodySums> body_sums() const {
         const auto [begin, end] = bodies();
         BodySums* const first = all_.body_sums.data() + begin / kSumPiece + place_;
         return {first, (end - begin + kSumPiece - 1) / kSumPiece};
     }
 
-    /// Calls visit(batches of a colour, threads, lanes) for every colour in its turn. The last one
-    /// holds what is left over, which shares bodies: one thread and one lane.
+    /// Calls visit(batches of a colour, threads, lanes) for every colour in its turn. The last
+    /// colour holds the pairs that are left over and share bodies: it gets one thread and one lane.
     template <class Threads, class Visit>
     void for_colours(const Threads& threads, LaneCount lanes, bool backward,
                      const Visit& visit) const {
@@ -132,7 +137,7 @@ void for_all_rows(const ColouredIsland& island, const Threads& threads, const Ro
                        });
 }
 
-/// Of the impulses, and of what they have changed.
+/// Multiplies a load's impulses, and what they have changed, by a part.
 template <class Threads>
 void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
     const ColouredStage& stage = island.stage();

@@ -10,14 +10,14 @@
 
 namespace tesserae {
 
-/// IslandRows of a coloured island, which are solved in float, eight contacts at a time: velocities
-/// as changes since the sub-step's start, which are added to the state at the end, and targets less
-/// what the start has, worked out in double. So neither a body's place nor its speed costs
-/// accuracy. The points of a pair are one item of a colour: its bodies are read and written once
-/// for all of them.
+/// The IslandRows of a coloured island, which are solved in float, eight contacts at a time.
+/// Velocities are changes since the sub-step's start, which are added to the state at the end.
+/// Targets are relative to the start's velocities and are computed in double. So neither a body's
+/// place nor its speed costs accuracy. The points of a pair are one item of a colour: its bodies
+/// are read and written once for all of them.
 ///
 /// The colours are the same for any number of threads, and so are the bits.
-/// @tparam Threads   OneThread, or one that has its functions
+/// @tparam Threads   OneThread, or a class that has its functions
 template <class Threads>
 class ColouredRows {
   public:
@@ -55,7 +55,7 @@ class ColouredRows {
     std::span<const BodyId> bodies_in(Range some) const {
         return {&step().coloured.bodies[some.begin], some.end - some.begin};
     }
-    /// Calls work(stage, bodies).
+    /// Calls work(stage, bodies) for pieces of the island's bodies.
     template <class Work>
     void for_bodies(const Work& work) const {
         threads_.for_bodies(island_.bodies(), [&](Range some) { work(stage(), some); });
@@ -89,7 +89,8 @@ Effort ColouredRows<Threads>::effort_of(const Impact& impact) const {
                : effort_of_large_impact(simulation(), contacts, impact.fastest);
 }
 
-/// The rows of all contacts are made unless those of an impact before are there.
+/// Makes the rows of all contacts, unless an impact has made them before, and applies the impulses
+/// that they start from.
 template <class Threads>
 void ColouredRows<Threads>::start(Cause cause) {
     island_.begin(cause);
@@ -105,7 +106,7 @@ void ColouredRows<Threads>::start(Cause cause) {
     step().has_rows[island()] = 1;
 }
 
-/// One iteration.
+/// Does one sweep over all rows.
 /// @return its residual [m/s]
 template <class Threads>
 template <class Directions>
@@ -139,8 +140,9 @@ double ColouredRows<Threads>::iterate(Pass pass, const Effort& effort) {
     return tesserae::iterate(pass, effort, [&](Sweep one) { return sweep(one); });
 }
 
-/// It ends once neither a row's velocity nor, by the next step, a body's changes by more than the
-/// tolerance: what all of a wall does together no row sees.
+/// Sweeps along conjugate directions until neither a row's velocity, nor a body's by the next step
+/// along the direction, changes by more than the tolerance. The second condition is for motions of
+/// a whole wall, which no row sees.
 template <class Threads>
 template <class Instead>
 double ColouredRows<Threads>::iterate_along_directions(const Effort& effort,
@@ -153,7 +155,7 @@ double ColouredRows<Threads>::iterate_along_directions(const Effort& effort,
     for (int i = 0; goes_on(i); ++i) {
         Sweep one = sweep_of(Pass::kSolve, effort, i);
         one.adjoint = one.backward;
-        // Before that it does not end, whatever is left.
+        // The residual is not asked for before the least number of sweeps.
         one.measured &= i + 1 >= std::min(effort.least, effort.sweeps);
         if (one.backward && directions) directions->go_on();
         if (one.backward && !directions) directions.emplace(island_, threads_);
@@ -182,7 +184,7 @@ double ColouredRows<Threads>::energy() const {
     return energy;
 }
 
-/// See LoadWork.
+/// Returns the work of the impulses as LoadWork has it [J].
 template <class Threads>
 double ColouredRows<Threads>::work() const {
     double work = 0;
@@ -258,7 +260,7 @@ void ColouredRows<Threads>::take_correction_back() {
     for_bodies([](auto... of) { tesserae::take_correction_back(of...); });
 }
 
-/// What solve_impact() and solve_island() of an island do, of a coloured one.
+/// Solves the impacts of a coloured island, see solve_impact().
 template <class Threads>
 void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = most_lanes()) {
@@ -266,6 +268,7 @@ void solve_coloured_impact(const Simulation& simulation, StepData& step, std::si
     solve_impact(rows);
 }
 
+/// Solves the load of a coloured island, see solve_island().
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = most_lanes()) {
@@ -274,6 +277,7 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     solve_load(rows);
 }
 
+/// Drops the position correction of a coloured island, see drop_correction().
 template <class Threads>
 void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
                               const Threads& threads) {

@@ -11,7 +11,8 @@
 
 namespace tesserae {
 
-/// Pairs of sweeps along conjugate directions, see conjugate.hpp.
+/// The state of a load that is solved by pairs of sweeps along conjugate directions, see
+/// conjugate.hpp.
 template <class Threads>
 class ConjugateDirections {
   public:
@@ -30,7 +31,7 @@ class ConjugateDirections {
         for_bodies([](auto... of) { take_warm_start(of...); });
         for_bodies([](auto... of) { begin_directions(of...); });
     }
-    /// The direction after a pair of sweeps.
+    /// Finds the direction after a pair of sweeps.
     /// @return the largest change of a body's velocity by a step along it [m/s]
     double find() {
         BodySums sums = weigh();  // r.z, r.p_last and the energy
@@ -53,9 +54,9 @@ class ConjugateDirections {
         slope_ = sums[0];
         return length_ * std::sqrt(fastest);
     }
-    /// Whether the next pair begins along it.
+    /// Returns whether the next pair of sweeps begins with a step along the direction.
     bool holds() const { return holds_; }
-    /// From there on to the next pair.
+    /// Begins the next pair of sweeps.
     void go_on() {
         last_slope_ = holds_ ? slope_ : 0;
         if (holds_) return for_bodies([this](auto... of) { go_along(of..., length_); });
@@ -64,15 +65,18 @@ class ConjugateDirections {
         for_bodies([](auto... of) { begin_directions(of...); });
     }
 
-    /// After the last pair: whether all impulses, the warm start too, leave more energy than none.
+    /// Returns, after the last pair, whether all impulses together with the warm start leave more
+    /// energy than none would.
     bool is_gain() const { return weigh()[2] + work()[1] - warm_start_ > 0; }
-    /// From the warm start to no impulses.
+    /// Takes the warm start back: no impulses have acted then.
     void take_back() const {
         for_bodies([](auto... of) { take_warm_start_back(of...); });
     }
 
-    // The rows' part of a pair, batch by batch as they are swept, while they are in the caches.
-    /// @param work   sweeps batches and returns what is left
+    // The rows' part of a pair of sweeps. It is done batch by batch as they are swept, while they
+    // are in the caches.
+    /// Sweeps batches of round pairs, with their part of the directions.
+    /// @param work   sweeps batches and returns their residual
     template <class Work>
     double sweep_round(BatchRange batches, Sweep sweep, const Work& work) const {
         const ColouredStage& stage = island_.stage();
@@ -85,6 +89,7 @@ class ConjugateDirections {
             return left;
         });
     }
+    /// Sweeps batches of all other pairs, with their part of the directions.
     template <class Work>
     double sweep_general(BatchRange batches, Sweep sweep, const Work& work) const {
         const ColouredStage& stage = island_.stage();
@@ -99,12 +104,12 @@ class ConjugateDirections {
     }
 
   private:
-    /// What is changed by less than this part of the warm start, or has been changed, is
-    /// rounding, of which directions would grow.
+    /// The relative change that counts as float's rounding, as a part of the warm start or of all
+    /// changes: directions would grow from it.
     static constexpr double kFloatStep = 1e-6;
 
-    /// Loads that are more than weights may be none: what ended an impact, and would be replayed.
-    /// The part of them that is left is the one that takes the most energy.
+    /// Cuts a warm start that is far more than weights: it may have ended an impact and would
+    /// replay it. The part that takes the most energy stays.
     /// @param weight   see weigh_warm_start()
     void leave_part_of_warm_start(double weight) {
         const ColouredStage& stage = island_.stage();
@@ -125,15 +130,15 @@ class ConjugateDirections {
         leave_part_of_load(island_, threads_, part);
         warm_start_ *= part * part;
     }
-    /// Of a pair: the bodies' part of r.z, r.p_last and the energy.
+    /// Returns the bodies' part of r.z, r.p_last and the energy of a pair of sweeps.
     BodySums weigh() const {
         BodySums sums = {};
         for (const BodySums& piece : sums_of([](auto... of) { return weigh_step(of...); }))
             for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
         return sums;
     }
-    /// After a step along a direction that led away from the solution there are none for a while.
-    /// @param ratio   of r.z to that before the step
+    /// Gives directions up for a while after a step that led away from the solution.
+    /// @param ratio   r.z divided by r.z before the step
     void look_for_rise(double ratio, double energy) {
         if (last_slope_ > 0 && !(energy <= last_energy_ && ratio <= kMostCarried)) {
             plain_ = pause_;
@@ -141,12 +146,12 @@ class ConjugateDirections {
         }
         last_energy_ = energy;
     }
-    /// Calls work(stage, bodies).
+    /// Calls work(stage, bodies) for pieces of the island's bodies.
     template <class Work>
     void for_bodies(const Work& work) const {
         threads_.for_bodies(island_.bodies(), [&](Range bodies) { work(island_.stage(), bodies); });
     }
-    /// What work(stage, bodies) returns of pieces of the bodies, in their order.
+    /// Returns the results of work(stage, bodies) for the pieces of the bodies, in their order.
     template <class Work>
     std::span<const BodySums> sums_of(const Work& work) const {
         const std::span<BodySums> sums = island_.body_sums();
@@ -155,7 +160,8 @@ class ConjugateDirections {
         });
         return sums;
     }
-    /// Sums of round_work and general_work, in the order of the batches for any number of threads.
+    /// Returns the sums of round_work and general_work. They are added in the order of the batches
+    /// for any number of threads.
     std::array<double, 2> work() const {
         const ColouredIslands& coloured = island_.stage().step.coloured;
         std::array<double, 2> sums = {};
@@ -173,17 +179,17 @@ class ConjugateDirections {
 
     const ColouredIsland& island_;
     const Threads& threads_;
-    double warm_start_ = 0;              ///< energy of what has been taken, see weigh_warm_start()
+    double warm_start_ = 0;              ///< energy of the warm start, see weigh_warm_start()
     double slope_ = 0, last_slope_ = 0;  ///< r.z
-    double of_direction_ = 0;            ///< the rows' part of r.p
+    double of_direction_ = 0;            ///< rows' part of r.p
     double last_energy_ = 0;             ///< at the end of the last pair
-    double rounding_ = 0;                ///< of a slope
+    double rounding_ = 0;                ///< rounding of a slope
     int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time
     float carried_ = 0, length_ = 1;
-    bool holds_ = false;  ///< the direction
+    bool holds_ = false;  ///< see holds()
 };
 
-/// Sweeps that go along no directions.
+/// Sweeps without conjugate directions.
 struct NoDirections {
     template <class Work>
     double sweep_round(BatchRange batches, Sweep, const Work& work) const {

@@ -8,9 +8,9 @@
 
 namespace tesserae {
 
-/// IslandRows that are solved one by one, in double: bodies have their velocities from every
-/// impulse on. Source: E. Catto, "Iterative dynamics with temporal coherence", 2005; friction is a
-/// block of three directions instead of separate ones.
+/// The IslandRows that are solved one by one, in double. Every impulse changes the bodies'
+/// velocities at once. Source: E. Catto, "Iterative dynamics with temporal coherence", 2005; here
+/// friction is a block of three directions instead of separate ones.
 class PlainRows {
   public:
     PlainRows(const Simulation& simulation, StepData& step, std::size_t island)
@@ -66,7 +66,7 @@ class PlainRows {
     Cause cause_ = Cause::kLoad;
     bool friction_ = true;
     std::span<const BodyId> bodies_;  ///< the movable ones, each once
-    std::span<BodyMotion> motions_;   ///< theirs, before the rows' impulses or a correction
+    std::span<BodyMotion> motions_;   ///< their motions before the rows' impulses or a correction
 };
 
 }  // namespace tesserae

@@ -8,55 +8,58 @@
 #include "core/dynamics/solver/static_loads.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
-// How an island is solved, once for both kinds of rows that it can have: PlainRows, one by one in
+// How an island is solved. This one text serves both kinds of rows: PlainRows, one by one in
 // double, and ColouredRows, eight or sixteen at a time in float.
 namespace tesserae {
 
-/// The rows of one island: what the solver needs of them.
+/// The rows of one island, with the functions that the solver needs.
 template <class Rows>
 concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const Effort& effort, double part,
                               const Impact& impact) {
     rows.simulation();
     rows.step();
     rows.island();
-    // The largest numbers of its contacts, and how long an impact of it is swept.
+    // Returns the largest numbers of the island's contacts, and how long an impact is swept.
     { rows.impact() } -> std::same_as<Impact>;
     { rows.effort_of(impact) } -> std::same_as<Effort>;
-    // Makes the rows and applies the impulses that they start from to the motion that the
-    // bodies had before the first call.
+    // Makes the rows and applies the impulses that they start from. The bodies first get back the
+    // motion that they had before the first call.
     rows.start(cause);
-    // From the next start() on there is no friction.
+    // Turns friction off from the next start() on.
     rows.leave_friction_out();
     // Sweeps a pass. Returns the residual of the last sweep [m/s].
     { rows.iterate(pass, effort) } -> std::same_as<double>;
-    // What the impulses have done since start(): see LoadWork. The work takes longer.
+    // Returns what the impulses have done since start(), see LoadWork. load() takes longer.
     { rows.energy() } -> std::same_as<double>;
     { rows.load() } -> std::same_as<LoadWork>;
-    // Leaves a part of the impulses and of what they have done.
+    // Multiplies the impulses and what they have changed by a part.
     rows.leave_part(part);
-    // An energy, or a multiple of it, before the impulses and after them.
+    // Returns an energy, or a multiple of it, before the impulses and after them.
     { rows.energies() } -> std::same_as<std::array<double, 2>>;
-    // Puts what the bodies are at into step.impact_motion, as before and as compressed.
+    // Writes the bodies' motion before the impact and after the compression to
+    // step.impact_motion.
     rows.keep_impact_motion();
     // Gives the bodies the velocities that the impulses have led to.
     rows.add_changes();
     { rows.restitution() } -> std::same_as<RestitutionSums>;
     rows.leave_part_of_restitution(part);
-    // step.impulses of the contacts, or of an impact step.hit.
+    // Writes step.impulses of the contacts, or step.hit after an impact.
     rows.keep();
-    // Before and after the sweeps of a position correction; and once the bodies have moved by it.
+    // Are called before and after the sweeps of a position correction, and once the bodies have
+    // moved by it.
     rows.begin_correction();
     rows.end_correction();
     rows.take_correction_back();
 };
 
-/// Whether rows go along conjugate directions: Rows::along_directions(impact) and
-/// Rows::iterate_along_directions(effort, instead).
+/// Rows that may go along conjugate directions. They have along_directions() and
+/// iterate_along_directions(effort, instead).
 template <class Rows>
 concept HasDirections = requires(Rows& rows) {
     rows.along_directions();
 };
 
+/// Returns whether the rows of this island go along conjugate directions.
 template <IslandRows Rows>
 bool goes_along_directions(const Rows& rows) {
     if constexpr (HasDirections<Rows>)
@@ -65,8 +68,9 @@ bool goes_along_directions(const Rows& rows) {
         return false;
 }
 
-/// Along conjugate directions, or one sweep after the other.
-/// @param instead   does that which is no gain, where the directions' end is one
+/// Solves a pass along conjugate directions, or by one sweep after the other.
+/// @param instead   is called if the directions end with a gain of energy, and replaces their
+///                  result
 /// @return the residual of the last sweep [m/s]
 template <IslandRows Rows, class Instead>
 double solve_pass(Rows& rows, bool along_directions, const Effort& effort, const Instead& instead) {
@@ -75,7 +79,7 @@ double solve_pass(Rows& rows, bool along_directions, const Effort& effort, const
     return rows.iterate(Pass::kSolve, effort);
 }
 
-/// The first part of an impact.
+/// Does the compression of an impact.
 template <IslandRows Rows>
 void compress(Rows& rows, bool along_directions, const Effort& effort) {
     rows.start(Cause::kImpact);
@@ -85,18 +89,18 @@ void compress(Rows& rows, bool along_directions, const Effort& effort) {
     });
 }
 
-/// The second part.
+/// Does the restitution of an impact, after the compression.
 template <IslandRows Rows>
 void restitute(Rows& rows, bool along_directions, const Impact& impact, const Effort& effort) {
     rows.keep_impact_motion();
-    // Where all that hit each other return alike, that much more is all of it.
+    // If all contacts have the same restitution, this is already the result.
     if (along_directions) rows.leave_part(1 + std::min(1.0, impact.returned));
     rows.iterate(Pass::kRestitution, effort);
     rows.add_changes();
     rows.leave_part_of_restitution(part_of_restitution(rows.restitution(), impact));
 }
 
-/// See solve_impact() of an island.
+/// Solves the impacts of an island by any kind of rows, see solve_impact() in solver.hpp.
 template <IslandRows Rows>
 void solve_impact(Rows& rows) {
     const Impact impact = rows.impact();
@@ -116,8 +120,7 @@ void solve_impact(Rows& rows) {
     rows.keep();
 }
 
-/// Of the impulses that a load starts from, which have acted, the part that may stay: see
-/// kWarmStartWeight.
+/// Cuts a warm start, which has acted already, to the part that may stay: see kWarmStartWeight.
 template <IslandRows Rows>
 void limit_warm_start(Rows& rows) {
     const Simulation& simulation = rows.simulation();
@@ -128,7 +131,7 @@ void limit_warm_start(Rows& rows) {
         rows.leave_part(load.best_part());
 }
 
-/// Instead of a load that is a gain: the part of the last one that takes the most energy.
+/// Replaces a load that gains energy by the part of its warm start that takes the most energy.
 template <IslandRows Rows>
 void leave_best_of_warm_start(Rows& rows) {
     rows.start(Cause::kLoad);
@@ -136,6 +139,7 @@ void leave_best_of_warm_start(Rows& rows) {
     if (load.energy > 0) rows.leave_part(load.best_part());
 }
 
+/// Solves a load from its warm start on.
 /// @return the residual of the last sweep [m/s]
 template <IslandRows Rows>
 double sweep_load(Rows& rows) {
@@ -145,19 +149,21 @@ double sweep_load(Rows& rows) {
     if (!along_directions) limit_warm_start(rows);
     const auto instead = [&] { leave_best_of_warm_start(rows); };
     const double residual = solve_pass(rows, along_directions, effort, instead);
-    // Plain rows keep theirs, which are a gain only where there are two or three sweeps.
+    // Plain rows keep their load: it gains energy only where there are two or three sweeps.
     if constexpr (HasDirections<Rows>)
         if (!along_directions && residual > effort.enough && rows.load().is_gain()) instead();
     return residual;
 }
 
-/// Before the rows of a load.
+/// Prepares a load before its rows are made: its static load, and whether a position correction
+/// follows.
 inline void begin_load(const Simulation& simulation, StepData& step, std::size_t island) {
     hold_still(simulation, step, island);
     if (is_corrected(simulation, step, island)) step.corrected[island] = Correction::kAll;
 }
 
-/// See solve_island().
+/// Solves the load of an island, and its position correction, by any kind of rows: see
+/// solve_island() in solver.hpp.
 template <IslandRows Rows>
 void solve_load(Rows& rows) {
     const Simulation& simulation = rows.simulation();

@@ -4,22 +4,21 @@
 
 namespace tesserae {
 
-/// If bodies of the island hit each other in this sub-step: the change of their motion by it. Needs
-/// the velocities before gravity. First the compression, until no bodies meet, then the restitution
-/// (part_of_restitution()). Its impulses are not kept: what is started from in the next sub-step is
-/// the load alone.
+/// Applies the impacts of one island: bodies that approach each other faster than resting ones do
+/// are stopped (compression), then thrown back by their restitution, see part_of_restitution().
+/// Call it before gravity is added. Its impulses are not kept: the next sub-step starts from the
+/// load alone.
 void solve_impact(const Simulation& simulation, StepData& step, std::size_t island);
 
-/// Solves the contacts of one island by sequential impulses, accumulated and clamped, warm
-/// started, in the order that Islands gives: changes the velocities of its movable bodies. Touches
-/// nothing of another island. A coloured one is solved by solve_coloured_island(). Source: E.
-/// Catto, "Iterative dynamics with temporal coherence", 2005; friction is a block of three
-/// directions instead of separate ones.
+/// Solves the load of one island by sequential impulses, which are accumulated, clamped and warm
+/// started. It goes through the contacts in the order that Islands gives and changes the velocities
+/// of the island's movable bodies, and of no others. Coloured islands are solved by
+/// solve_coloured_island(). Source: E. Catto, "Iterative dynamics with temporal coherence", 2005;
+/// here friction is a block of three directions instead of separate ones.
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
 
-/// Takes back the part of the velocities that only took overlap away, once the island's bodies have
-/// moved by it (as split impulses: Guendelman et al., "Nonconvex rigid bodies with stacking",
-/// 2003).
+/// Takes the velocities of the island's position correction back, once its bodies have moved by
+/// them (split impulses: Guendelman et al., "Nonconvex rigid bodies with stacking", 2003).
 void drop_correction(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

@@ -6,20 +6,19 @@
 
 namespace tesserae {
 
-/// Where a few bodies creep on what holds them, as a tower does: step.impulses of the island become
-/// the load that holds them still, solved at once. A high pile bends like a beam: it takes sweeps
-/// some n^4 of n bodies to see that it leans, until then it sways, and what is small has fallen
-/// before. The sweeps then go on from this load, with their own aims.
+/// Sets step.impulses of an island to the load that holds its bodies still, if a few bodies creep
+/// on something that supports them, as a tower does. The load is solved directly. A high pile bends
+/// like a beam: sweeps need some n^4 iterations to see that n bodies lean; until then the pile
+/// sways, and a small one falls. The sweeps then go on from this load, with their own aims.
 ///
-/// Of the impulses at the points that touch that leave the least motion, in the norm of the kinetic
-/// energy, these are the least (the method of multipliers: Nocedal and Wright, "Numerical
-/// optimization", 2006, 17.3). Points that would pull let go and those whose friction does not
-/// reach slip, and what is left is solved again: as with sweeps, contacts only push, and friction
-/// is at most that of Coulomb's law.
+/// Among the impulses at touching points that leave the least kinetic energy, these are the least
+/// (method of multipliers: Nocedal and Wright, "Numerical optimization", 2006, 17.3). Points that
+/// would pull let go, points with too little friction slip, and the rest is solved again. So
+/// contacts only push and friction obeys Coulomb's law, as with sweeps.
 ///
-/// Not for what takes too much work (kStaticWork: walls, heaps), has rolling friction, is jammed
-/// (kPartedWeight), has just been hit or moves faster than gravity makes it in a sub-step; not
-/// where nothing is held, and not with fewer sweeps than by default.
+/// It does nothing for an island that takes too much work (kStaticWork: walls, heaps), has rolling
+/// friction, is jammed (kPartedWeight), has just been hit, moves faster than gravity makes it in a
+/// sub-step or is not supported, nor with fewer `iterations` than by default.
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

@@ -12,15 +12,15 @@
 
 namespace tesserae {
 
-/// What a contact point's rows start from, and what they end with, on b. There is one of every
-/// point in memory twice: friction is in float, as a part of the normal impulse, whose range it
-/// has.
+/// The impulses on b from which a contact point's rows start, and with which they end. Every point
+/// has two of them in memory, so that friction is kept in float, as a part of the normal impulse.
 struct ContactImpulse {
     double normal = 0;                ///< [N s], >= 0
     std::array<float, 4> slope = {};  ///< friction impulse over the normal one, world
 
     Vec4 tangent() const { return normal * assembled(slope[0], slope[1], slope[2], slope[3]); }
 };
+/// Returns the ContactImpulse of a normal and a friction impulse.
 /// @param tangent   [N s], zero where the normal impulse is
 inline ContactImpulse contact_impulse(double normal, const Vec4& tangent) {
     ContactImpulse impulse{normal};
@@ -29,18 +29,19 @@ inline ContactImpulse contact_impulse(double normal, const Vec4& tangent) {
     return impulse;
 }
 
-/// What a contact point's rows ended with, > 0: where the next step's solver starts.
+/// The impulses, > 0, with which a contact point's rows ended: the next step's solver starts from
+/// them.
 struct KeptImpulse : ContactImpulse {
     BodyId a = 0, b = 0;        ///< a < b
     std::uint32_t feature = 0;  ///< which point of the pair; stays the same while the features do
 };
 
-/// KeptImpulses ascending by (a, b, feature), whose bodies are there once for some that follow each
-/// other. They are read as such, by value.
+/// A list of KeptImpulse ascending by (a, b, feature). Bodies are stored once for impulses that
+/// follow each other. They are read as KeptImpulse, by value.
 class KeptImpulses {
   public:
-    /// Impulses from `first` on, to the next run's first, are of these bodies. More than one run
-    /// may be.
+    /// The bodies of the impulses from `first` to the next run's first. A pair may have more than
+    /// one run.
     struct Run {
         BodyId a, b;
         std::uint32_t first;
@@ -73,7 +74,7 @@ class KeptImpulses {
     bool empty() const { return impulses_.empty(); }
     Iterator begin() const { return {*this, {}}; }
     Iterator end() const { return {*this, {runs_.size(), size()}}; }
-    /// In a time that grows with the logarithm of their number.
+    /// Returns the i-th impulse, in a time that grows with the logarithm of their number.
     KeptImpulse operator[](std::size_t i) const {
         const auto next = std::partition_point(runs_.begin(), runs_.end(),
                                                [&](const Run& run) { return run.first <= i; });
@@ -93,13 +94,13 @@ class KeptImpulses {
         impulses_.push_back(impulse);
         features_.push_back(impulse.feature);
     }
-    /// Empties it, with memory for so many.
+    /// Empties the list and reserves memory for so many.
     void reserve_anew(const Size& size) {
         tesserae::reserve_anew(runs_, size.runs);
         tesserae::reserve_anew(impulses_, size.impulses);
         tesserae::reserve_anew(features_, size.impulses);
     }
-    /// So many, all of which are then put: what they were may be lost.
+    /// Resizes the list. All items must then be put: their old values may be lost.
     void resize_anew(const Size& size) {
         tesserae::resize_anew(runs_, size.runs);
         tesserae::resize_anew(impulses_, size.impulses);

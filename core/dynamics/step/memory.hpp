@@ -14,56 +14,59 @@
 
 namespace tesserae {
 
+/// A point of a kept manifold.
 struct KeptPoint {
     std::array<float, 4> on_a;  ///< on a's surface, from the smaller body's centre, in a's axes [m]
-    float separation;           ///< where it was found, along the normal [m]
+    float separation;           ///< along the normal, when it was found [m]
     std::uint32_t feature;
 };
-/// The manifold of two bodies that hardly move against each other, as it was found in the frame of
-/// a where b was at `offset` and turned by `rotor`. That alone is state; the rest follows from it.
+/// The manifold of two bodies that hardly move relative to each other, as it was found in the frame
+/// of a with b at `offset` and turned by `rotor`. Only offset and rotor are state; the rest follows
+/// from them.
 struct KeptManifold {
     enum class Keeps : std::uint8_t { kUnknown, kNormalOfA, kNormalOfB, kNoFace };
 
     BodyId a = 0, b = 0;  ///< a < b
     Keeps keeps = Keeps::kUnknown;
-    std::uint8_t no_internal_edge = 0;       ///< with all points: see Contact
-    std::uint8_t count = 0;                  ///< of the points
+    std::uint8_t no_internal_edge = 0;       ///< for all points: see Contact
+    std::uint8_t count = 0;                  ///< number of points
     PackedVec4 offset = PackedVec4::Zero();  ///< [m]
     Rotor rotor;                             ///< b's frame to a's
-    PackedVec4 normal = PackedVec4::Zero();  ///< from a to b where it was found, in a's frame
+    PackedVec4 normal = PackedVec4::Zero();  ///< from a to b when it was found, in a's frame
     std::array<KeptPoint, kManifoldPoints> points = {};
 
     std::span<const KeptPoint> found() const { return {points.data(), count}; }
 };
-/// Those of a range of pairs. What is kept from step to step is there once, in both steps' lists,
-/// and is not changed; none is made as a constant, so that its memory can be used again.
+/// The kept manifolds of a range of pairs. A manifold that is kept from step to step exists once,
+/// in both steps' lists, and is not changed. None is created const, so that its memory can be used
+/// again.
 using KeptManifolds = std::vector<std::shared_ptr<const KeptManifold>>;
 
-/// Everything beside the bodies' state that one step leaves to the next and that changes results.
-/// Saved with a trajectory so that a resumed run continues bit for bit.
+/// Everything besides the bodies' state that one step leaves to the next and that changes results.
+/// It is saved with a trajectory, so that a resumed run continues bit for bit.
 struct StepMemory {
     KeptImpulses impulses;
-    /// Of each of `impulses` what held rolling and twisting, on b, world [N m s]; empty where there
-    /// is no rolling friction.
+    /// The angular impulse against rolling and twisting for each of `impulses`, on b, world [N m
+    /// s]; empty where there is no rolling friction.
     std::vector<Bivector> angular_impulses;
-    /// Of every body, or empty where sleeping is off: the lowest body of the island that it sleeps
-    /// in, or kAwake.
+    /// For every body the lowest body of the island in which it sleeps, or kAwake; empty where
+    /// sleeping is off.
     std::vector<BodyId> asleep;
-    std::vector<KeptManifolds> kept;  ///< ascending (a, b), from list to list too
+    std::vector<KeptManifolds> kept;  ///< ascending (a, b), also from list to list
     std::vector<double> still;        ///< how long every body has hardly moved [s], or empty
-    double time = 0;  ///< of all steps so far [s]; changes no result, messages name it
+    double time = 0;                  ///< time of all steps so far [s]; for messages only
 };
 constexpr BodyId kAwake = std::numeric_limits<BodyId>::max();
 
-/// What a step found, in the middle of its last sub-step. Contacts of bodies that sleep count, as
-/// they were when they fell asleep, but their overlap does not.
+/// What a step found in the middle of its last sub-step. Contacts of sleeping bodies count as they
+/// were when the bodies fell asleep, but their overlap does not.
 struct StepReport {
     std::uint64_t contacts = 0;   ///< contact points that touch or overlap
     double penetration = 0;       ///< deepest overlap [m], >= 0
-    double mean_penetration = 0;  ///< overlap of those that touch or overlap, on average [m], >= 0
+    double mean_penetration = 0;  ///< mean overlap of these points [m], >= 0
     double residual = 0;  ///< largest change of a contact's normal velocity that the solver still
                           ///< made in its last iteration [m/s]
-    std::uint64_t asleep = 0;  ///< bodies
+    std::uint64_t asleep = 0;  ///< number of bodies asleep
 };
 
 }  // namespace tesserae

@@ -5,15 +5,16 @@
 
 namespace tesserae {
 
-/// What lists of a step take beyond what they need when they grow: one part in so many. Numbers of
-/// contacts creep up while bodies settle, and each growth writes all of a list to new memory.
+/// The spare memory that a step's lists take when they grow: one part in so many. Usual 32. The
+/// number of contacts creeps up while bodies settle, and each growth copies a whole list to new
+/// memory.
 constexpr std::size_t kSpareParts = 32;
-/// A list that uses less than one part in so many of its memory gives it back, unless it has less
-/// than so many bytes.
+/// A list that uses less than one part in kIdleParts of its memory gives it back, unless it has
+/// less than kLeastIdle bytes. Usual 4 and 64 KiB.
 constexpr std::size_t kIdleParts = 4, kLeastIdle = std::size_t{1} << 16;
 
-/// Makes an empty list with memory for so many items. It never holds old and new memory at once,
-/// as a vector that grows does.
+/// Empties a list and reserves memory for so many items. Unlike a vector that grows, it never holds
+/// old and new memory at once.
 template <class Item>
 void reserve_anew(std::vector<Item>& list, std::size_t size) {
     list.clear();
@@ -24,31 +25,31 @@ void reserve_anew(std::vector<Item>& list, std::size_t size) {
     list.reserve(size + size / kSpareParts);
 }
 
-/// Makes a list of so many items, each of which is then written: what they were may be lost.
+/// Resizes a list to so many items. Each must then be written: their old values may be lost.
 template <class Item>
 void resize_anew(std::vector<Item>& list, std::size_t size) {
-    // Not cleared where they fit: what is there need not be made before it is written over.
+    // Not cleared if they fit: old items need not be created again before they are overwritten.
     if (list.capacity() < size || list.capacity() / kIdleParts > size) reserve_anew(list, size);
     list.resize(size);
 }
 
-/// Gives the memory back of a list that is seldom as long, unless it has little.
+/// Empties a list that is seldom as long as now, and gives its memory back unless it has little.
 template <class Item>
 void release(std::vector<Item>& list) {
     list.clear();
     if (list.capacity() > kLeastIdle / sizeof(Item)) std::vector<Item>().swap(list);
 }
 
-/// Before a list is filled anew with about as many items as it had: memory for these. What they
-/// were may be lost.
+/// Prepares a list that will be filled anew with about `size` items: it gets memory for these. Its
+/// old items may be lost.
 template <class Item>
 void prepare(std::vector<Item>& list, std::size_t size) {
     size += size / (2 * kSpareParts);
     if (list.capacity() < size || list.capacity() / kIdleParts > size) reserve_anew(list, size);
 }
 
-/// Makes a list of at least `size` items, of which the first `used` stay.
-/// @param ratio   of all items that are expected to so many
+/// Grows a list to at least `size` items, of which the first `used` stay.
+/// @param ratio   number of all items that are expected, divided by `size`
 template <class Item>
 void grow(std::vector<Item>& list, std::size_t used, std::size_t size, double ratio) {
     if (list.capacity() < size) {

@@ -5,8 +5,8 @@
 
 namespace tesserae {
 
-/// The stages of a step in their order, as World::step calls them; all but the last once a
-/// sub-step, and kStopFastBodies only after halves in which something is fast.
+/// The stages of a step, as World::step calls them. All but the last take place once a sub-step;
+/// kStopFastBodies only after halves in which something is fast.
 enum class Stage {
     kAdvanceFirstHalf,
     kFindPairs,
@@ -20,39 +20,43 @@ enum class Stage {
     kStopFastBodies,
     kFinishStep,
 };
-/// The name of the stage's function: "find_pairs".
+/// Returns the name of the stage's function, as "find_pairs".
 const char* name_of(Stage stage);
 
-/// Sees every stage of a step begin and end: for traces, measurements and tests.
+/// An observer that sees every stage of a step begin and end, for traces, measurements and tests.
 class StageObserver {
   public:
     virtual ~StageObserver() = default;
-    /// @param items        bodies, pairs, contacts or islands: what the stage works on
-    /// @param simulation   and `step`: as the stage finds them
+    /// Is called when a stage begins.
+    /// @param items              number of bodies, pairs, contacts or islands that the stage works
+    ///                           on
+    /// @param simulation, step   as the stage finds them
     virtual void begin(Stage stage, std::size_t items, const Simulation& simulation,
                        const StepData& step) = 0;
     virtual void end(Stage stage) = 0;
 };
 
-/// How the work of a step's stages is shared out. It decides nothing: every schedule gives the same
-/// bits. This one does all of it on the calling thread and tests every two bodies for pairs.
+/// The way in which the work of a step's stages is shared out. It decides nothing: every schedule
+/// gives the same bits. This one does all work on the calling thread and tests every two bodies for
+/// pairs.
 class Schedule {
   public:
     virtual ~Schedule() = default;
 
-    /// Calls work(Range) for ranges that cover 0 <= i < count once. Each begins at a multiple of
-    /// `grain`, in items; those of one range do not depend on those of another.
+    /// Calls work(Range) for ranges that cover 0 <= i < count once. Each range begins at a multiple
+    /// of `grain` items. Items of different ranges do not depend on each other.
     virtual void for_each_range(std::size_t count, std::size_t grain,
                                 FunctionRef<void(Range)> work);
-    /// Whether test(Range) is true of any such range.
+    /// Returns whether test(Range) is true for any such range.
     virtual bool any_range(std::size_t count, std::size_t grain, FunctionRef<bool(Range)> test);
 
-    /// step.pairs from step.bounds: those of all bodies that is_pair() says yes to, ascending.
+    /// Finds step.pairs from step.bounds: all pairs for which is_pair() is true, ascending.
     virtual void find_pairs(const Simulation& simulation, StepData& step);
-    /// The same from bounds that have not changed, after bodies woke.
+    /// Finds step.pairs again from unchanged bounds, after bodies woke.
     virtual void choose_pairs(const Simulation& simulation, StepData& step);
 
-    /// solve_impact() of every island, solve_island() and drop_correction().
+    /// Calls solve_impact() for every island; the next two call solve_island() and
+    /// drop_correction().
     virtual void solve_impacts(const Simulation& simulation, StepData& step);
     virtual void solve_islands(const Simulation& simulation, StepData& step);
     virtual void drop_corrections(const Simulation& simulation, StepData& step);

@@ -6,22 +6,22 @@
 
 namespace tesserae {
 
-/// How a body turns freely; its angular momentum stays in both.
+/// How a body turns freely. Both ways keep its angular momentum.
 enum class RotationIntegrator {
     kEuler,     ///< with the angular velocity of the step's start
-    kMidpoint,  ///< with that of the middle, implicitly: keeps the energy too
+    kMidpoint,  ///< with that of the step's middle, implicitly: keeps the energy too
 };
 
-/// The [physics] table.
+/// The settings of a scene's [physics] table.
 struct PhysicsSettings {
     Vec4 gravity = {0, -10, 0, 0};  ///< [m/s^2]
     double duration = 1;            ///< [s]
     double steps_per_second = 240;  ///< [1/s]
-    int substeps = 1;  ///< of equal length, a step: pairs are looked for once, contacts in each
-    /// Sweeps of the contact solver over an island, a sub-step, at most; see effort_of_load() for
-    /// what may take more.
+    int substeps = 1;  ///< equal parts of a step: pairs are found once, contacts in each
+    /// The most sweeps of the contact solver over an island in a sub-step; see effort_of_load() for
+    /// islands that may take more.
     int iterations = 10;
-    double tolerance = 1e-6;  ///< residual [m/s] below which its sweeps end; 0: all of them
+    double tolerance = 1e-6;  ///< residual [m/s] at which sweeps end; 0: all are done
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
     bool sleeping = false;  ///< islands at rest are left out until something touches them
     std::uint64_t seed = 1;

@@ -4,8 +4,8 @@
 
 namespace tesserae {
 
-/// Keeps what a stage of the real step found when it began, to measure or test what comes next on
-/// copies of it.
+/// Copies what a stage of the real step finds when it begins. Measurements and tests then run the
+/// next stages on copies of it.
 class StageCopy : public StageObserver {
   public:
     explicit StageCopy(Stage stage) : stage_(stage) {}
@@ -17,7 +17,7 @@ class StageCopy : public StageObserver {
     }
     void end(Stage) override {}
 
-    Simulation simulation;  ///< of the last time
+    Simulation simulation;  ///< as the stage last found it
     StepData step;
 
   private:

@@ -5,15 +5,16 @@
 
 namespace tesserae {
 
-/// A body's position, velocity or angular velocity has grown so large that its square overflows,
-/// or is no number. The lowest such body is named; the bodies are still as after the last step.
+/// The error that a body's position, velocity or angular velocity is not a number or is so large
+/// that its square overflows. It names the lowest such body. The bodies are still as after the last
+/// step.
 struct LeftFiniteRange : RunError {
     LeftFiniteRange(BodyId body, double time);
     BodyId body;
     double time;  ///< of the step's end [s]
 };
 
-/// Checks the bodies and works out what every step needs.
+/// Checks the bodies and computes what every step needs.
 /// @throws InputError   a pair of shapes that can meet has no contacts yet; arrays of different
 ///                      lengths; 2^32 bodies or more
 Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings);
@@ -22,39 +23,44 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings);
 /// @throws InputError   dt is not finite or not > 0
 void begin_step(const Simulation& simulation, StepData& step, double dt);
 
-/// Whether the motion of all bodies in the range is.
+/// Returns whether the motion of all bodies in the range is finite.
 bool is_finite(const Simulation& simulation, const StepData& step, Range bodies);
 
+/// Checks that the motion of all bodies is finite.
 /// @throws LeftFiniteRange   naming the lowest body whose motion is not finite
 void require_finite(const Simulation& simulation, const StepData& step);
 
-/// The impulses that the sub-step leaves to the next, or the step if it is its last, are those of
-/// step.impulses that are > 0, ascending, and of bodies that sleep the last ones.
+/// The lists of impulses that a sub-step leaves to the next sub-step, or to the next step if it is
+/// the last. They are those of step.impulses that are > 0, ascending, and for sleeping bodies the
+/// last ones.
 struct LeftImpulses {
     KeptImpulses& impulses;
     std::vector<Bivector>& angular;  ///< where there is rolling friction
 };
+/// Returns the lists to which this sub-step writes.
 LeftImpulses left_impulses(Simulation& simulation, StepData& step);
 
-/// How many of step.impulses in the range are > 0, and how many runs of contacts have any there.
+/// Returns the number of step.impulses in the range that are > 0, and that of the runs of contacts
+/// that have any there.
 KeptImpulses::Size count_pushing(const StepData& step, Range contacts);
-/// Writes these to the places from `first` on.
+/// Writes the impulses that are > 0 in the range to the places from `first` on.
 void keep_pushing(const Simulation& simulation, const StepData& step, Range contacts,
                   KeptImpulses::Size first, const LeftImpulses& left);
-/// All of them, beside those of bodies that sleep: where sleeping is on.
+/// Merges all impulses that are > 0 with those of sleeping bodies, where sleeping is on.
 void merge_impulses(const Simulation& simulation, StepData& step, const LeftImpulses& left);
 
-/// Contacts that are added up one after the other; the sums of pieces are then added in their
+/// The number of contacts that are added up as one piece. The sums of pieces are added in their
 /// order, so that the report has the same bits for any number of threads.
 constexpr std::size_t kReportPiece = 1024;
 
 /// Sizes step.sums.
 void begin_report(StepData& step);
-/// @param contacts   begins with a piece
+/// Adds up the contacts in the range for the report.
+/// @param contacts   the range begins with a piece
 void sum_contacts(StepData& step, Range contacts);
 
-/// Makes the step's result the present state, and what the next one needs of it the memory. Needs
-/// step.sums and the memory's impulses.
+/// Makes the step's result the present state, and moves what the next step needs to the memory.
+/// Needs step.sums and the memory's impulses.
 StepReport commit_step(Simulation& simulation, StepData& step);
 
 }  // namespace tesserae

@@ -17,15 +17,15 @@
 
 namespace tesserae {
 
-/// Items begin <= i < end of a list: what one call of a stage works on. The items of a range do
-/// not depend on each other, so that any split gives the same bits.
+/// The items begin <= i < end of a list, on which one call of a stage works. They do not depend on
+/// each other, so that any split gives the same bits.
 struct Range {
     std::size_t begin, end;
 };
 
-/// The ball that holds all that a body can reach in the rest of the step.
+/// The ball that encloses all that a body can reach in the rest of the step.
 struct Bounds {
-    /// Where the body is when they are made, world [m]; 0 if unbounded.
+    /// The body's position when the bounds are made, world [m]; 0 if unbounded.
     PackedVec4 centre = PackedVec4::Zero();
     double radius = 0;  ///< [m]; infinite if unbounded
 };
@@ -37,26 +37,25 @@ struct BodyPair {
     friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
-/// Groups of contacts that share movable bodies, numbered by their lowest movable body. Island k
-/// has the runs of contacts runs[first[k]] to runs[first[k + 1]], in the order in which they are
-/// solved.
+/// The islands: groups of contacts that share movable bodies, in the order of their lowest movable
+/// body. Island k has the runs of contacts runs[first[k]] to runs[first[k + 1]].
 ///
-/// They are in ascending order of (a, b, feature), and the contacts of small islands are solved in
-/// it, one by one. Large ones are coloured and solved in order of the batches that ColouredIslands
-/// has of them.
+/// Runs are in ascending order of (a, b, feature). The contacts of small islands are solved in this
+/// order, one by one. Large islands are coloured and solved in the order of their batches in
+/// ColouredIslands.
 struct Islands {
     static constexpr std::uint32_t kNotColoured = std::numeric_limits<std::uint32_t>::max();
 
     std::vector<std::uint32_t> first = {0};
-    std::vector<std::uint32_t> runs;       ///< their numbers in the list of contacts
-    std::vector<std::uint32_t> contacts;   ///< how many each island has
+    std::vector<std::uint32_t> runs;       ///< numbers of the runs in the list of contacts
+    std::vector<std::uint32_t> contacts;   ///< number of contacts of each island
     std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
                                            ///< kNotColoured
-    std::vector<std::uint8_t> held;        ///< each island's: contacts do not move some body
-    std::vector<std::uint8_t> conjugates;  ///< each island's: its load goes along conjugate
+    std::vector<std::uint8_t> held;        ///< of each island: contacts do not move some body
+    std::vector<std::uint8_t> conjugates;  ///< of each island: its load goes along conjugate
                                            ///< directions, see has_conjugates()
-    std::vector<double> falling_mass;      ///< each island's: of what gravity pulls at [kg]
-    std::vector<std::uint32_t> first_row;  ///< each island's in StepData::rows, if not coloured
+    std::vector<double> falling_mass;      ///< of each island: mass that gravity acts on [kg]
+    std::vector<std::uint32_t> first_row;  ///< of each island in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }
     std::span<const std::uint32_t> runs_in(std::size_t island) const {
@@ -65,25 +64,26 @@ struct Islands {
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
 
-/// Of the contacts of one piece of the list, for the step's report.
+/// The sums over the contacts of one piece of the list, for the step's report.
 struct ContactSums {
     std::uint64_t contacts = 0;
-    double penetration = 0, sum = 0;  ///< deepest overlap and all overlaps [m]
+    double penetration = 0, sum = 0;  ///< deepest overlap and sum of all overlaps [m]
 };
 
-/// The normal velocities [m/s] at which a contact's passes aim. The first pass is an impact's
-/// compression or a load; the second one follows it: the restitution or the position correction.
+/// The normal velocities [m/s] at which the passes over a contact aim. The first pass is the
+/// compression of an impact, or a load. The second pass follows it: the restitution, or the
+/// position correction.
 struct ContactTargets {
     double first = 0, second = 0;
 };
 
-/// A contact as the solver sees it. Impulses act on b, their opposites on a.
+/// A contact as the solver sees it. Impulses act on b, and their opposites on a.
 struct ContactRow {
     Vec4 normal;             ///< unit, from a to b
     Vec4 r_a, r_b;           ///< from the centres to the contact point [m]
-    Vec4 normal_response;    ///< change of the relative velocity by a unit impulse on n [1/kg]
+    Vec4 normal_response;    ///< change of the relative velocity by a unit impulse along n [1/kg]
     Mat4 tangent_mass;       ///< inverse of the response in the three tangent directions [kg]
-    double slide_mass = 0;   ///< below the inverse of the largest of these responses [kg]
+    double slide_mass = 0;   ///< at most the inverse of the largest of these responses [kg]
     Vec4 tangent_impulse;    ///< [N s], orthogonal to the normal
     Vec4 slip_by_turning;    ///< [m/s], where there is friction
     double normal_mass = 0;  ///< inverse of the response along the normal [kg]
@@ -93,20 +93,20 @@ struct ContactRow {
     BodyId a = 0, b = 0;
 };
 
-/// Rolling or twisting of a contact's bodies against each other: the part of a bivector that
-/// contains the normal n, n ^ t, or its dual part, dual(n ^ t), as the tangent t.
+/// The rolling or the twisting of a contact's bodies. A bivector's part that contains the normal n,
+/// n ^ t, or its dual part, dual(n ^ t), is stored as the tangent t.
 struct RollingPart {
     Mat4 mass;             ///< inverse of the response in the three tangent directions [kg m^2]
-    double step_mass = 0;  ///< below the inverse of the largest of these responses [kg m^2]
+    double step_mass = 0;  ///< at most the inverse of the largest of these responses [kg m^2]
     Vec4 impulse;          ///< [N m s], orthogonal to the normal
 };
-/// What resists rolling and twisting at a contact.
+/// The resistance to rolling and twisting at a contact.
 struct RollingRow {
-    double arm = 0;  ///< of the normal impulse: how far either part's impulse may go [m]
+    double arm = 0;  ///< greatest impulse of either part per normal impulse [m]
     RollingPart rolling, twisting;
 };
 
-/// How a body moves.
+/// The velocities of a body.
 struct BodyMotion {
     Vec4 velocity = Vec4::Zero();
     Bivector angular_velocity;
@@ -122,35 +122,37 @@ struct BodyMotion {
     }
 };
 
-/// What takes an island's overlap away after its load: kStraight turns no body.
+/// The position correction that follows an island's load: kStraight turns no body.
 enum class Correction : std::uint8_t { kNone, kAll, kStraight };
 
-/// Whether solve_impact() has to do with an island: kPatch is a part of one, see ImpactPatches.
+/// What solve_impact() has to solve of an island: kPatch means that the island is a patch of a
+/// large one, see ImpactPatches.
 enum class Awaits : std::uint8_t { kNothing, kImpact, kPatch };
 
-/// Of a body before an impact and at its greatest compression.
+/// The motion of a body before an impact and after its compression.
 struct ImpactMotion {
     BodyMotion before, compressed;
 };
 
-/// The bodies as they were after the last finished step, and what is worked out from them once.
+/// The bodies as they were after the last finished step, and what is computed from them once.
 struct Simulation {
     Bodies bodies;
     StepMemory memory;
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
-    FloatRange floats;                  ///< of them
+    FloatRange floats;                  ///< of all types
     Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
 };
 
-/// What the stages of one step hand on. Nothing in it survives the step, its memory does; where
-/// nothing turns the first step's rotors and angular velocities stay, which are all later ones'.
+/// The data that the stages of one step hand on. Their values do not survive the step, but their
+/// storage does. Where nothing turns, the rotors and angular velocities of the first step stay, as
+/// they never change.
 struct StepData {
     double dt = 0;    ///< [s]
     double h = 0;     ///< length of a sub-step [s]
-    double kick = 0;  ///< what gravity adds to a speed in it [m/s]
+    double kick = 0;  ///< speed that gravity adds in a sub-step [m/s]
     int substep = 0;  ///< 0 to settings.substeps - 1
 
     std::vector<Vec4> position;  ///< of every body, on its way from the last state to the next
@@ -158,7 +160,8 @@ struct StepData {
     std::vector<Vec4> velocity;
     std::vector<Bivector> angular_velocity;
 
-    /// World, in the middle of the sub-step, of the bodies that are not isotropic and awake.
+    /// Inverse inertia in world axes in the middle of the sub-step, of bodies that are awake and
+    /// not isotropic.
     std::vector<BivectorMap> inverse_inertia;
 
     std::vector<Bounds> bounds;   ///< of every body
@@ -166,65 +169,67 @@ struct StepData {
     Vec4 drift = Vec4::Zero();    ///< see drift_of()
     ContactList contacts;         ///< ascending (a, b, feature)
     Islands islands;
-    bool rows_in_use = false;              ///< from their islands' building to the sub-step's end
+    bool rows_in_use = false;  ///< rows are in use: from build_islands() to the end of the sub-step
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
     std::vector<RollingRow> rolling_rows;  ///< of `rows`, where there is rolling friction
-    ColouredIslands coloured;              ///< of the others
+    ColouredIslands coloured;              ///< the islands that are coloured
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
     std::vector<std::uint8_t> hit;         ///< of every contact: an impact pushed it
-    /// Of every contact, where there are rims: see rise_of() and slip_on_rim().
+    /// For every contact, where there are rims: see rise_of() and slip_on_rim().
     std::vector<double> rises;
     std::vector<Vec4> rim_slips;
-    std::vector<std::uint8_t> company;  ///< of every body, likewise: see count_company()
-    KeptImpulses warm_start;            ///< what a sub-step leaves to the next of the step
-    /// Of `impulses` and `warm_start`, where there is rolling friction; see StepMemory.
+    std::vector<std::uint8_t> company;  ///< of every body, for rims: see count_company()
+    KeptImpulses warm_start;  ///< impulses that a sub-step leaves to the next one of the step
+    /// The angular impulses to `impulses` and `warm_start`, where there is rolling friction; see
+    /// StepMemory.
     std::vector<Bivector> angular_impulses, warm_start_angular;
-    std::vector<KeptManifolds> kept, last_kept;  ///< the sub-step's, and those of the one before it
+    std::vector<KeptManifolds> kept, last_kept;  ///< those of this sub-step and of the last one
     std::vector<Correction> corrected;           ///< of every island: see is_corrected()
     std::vector<double> residual;                ///< of every island [m/s]
-    std::vector<BodyId> asleep;                  ///< as in StepMemory, as of now
+    std::vector<BodyId> asleep;                  ///< as in StepMemory, but now
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
 
-    /// Made and used within one stage; here so that their memory is kept.
+    /// Lists that are made and used within one stage. They are here so that their memory is kept.
     KeptImpulses merged_impulses;
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<ImpactMotion> impact_motion;  ///< of every body, where there is restitution
-    // Room for two for each of `rows`: an island's bodies, and how they moved before its impulses.
+    // Two places for each of `rows`: an island's bodies, and their motion before its impulses.
     std::vector<BodyId> bodies_of_rows;
     std::vector<BodyMotion> motions_of_rows;
     std::vector<std::uint8_t> has_rows;  ///< of every island: its rows are made
     std::vector<std::uint8_t> was_hit;   ///< of every island: there was an impact
     std::vector<Awaits> awaits;          ///< of every island
-    std::vector<std::uint32_t> filled;   ///< which of the lists kept before have something
+    std::vector<std::uint32_t> filled;   ///< which of the last kept lists are not empty
 };
 
-/// Gives their memory back, if they are not in use.
+/// Gives the memory of all rows back. They must not be in use.
 inline void release_rows(StepData& step) {
     step.coloured = {};
     std::vector<ContactRow>().swap(step.rows);
     std::vector<RollingRow>().swap(step.rolling_rows);
 }
 
-/// Contacts and their impulses are in ascending order of this.
+/// Returns the key by which contacts and their impulses are in ascending order.
 template <class ContactOrImpulse>
 auto key_of(const ContactOrImpulse& c) {
     return std::tuple(c.a, c.b, c.feature);
 }
 
-/// What the sub-step before this one left.
+/// Returns the impulses that the sub-step before this one left.
 inline const KeptImpulses& last_impulses(const Simulation& simulation, const StepData& step) {
     return step.substep == 0 ? simulation.memory.impulses : step.warm_start;
 }
 
-/// Of them.
+/// Returns the angular impulses that the sub-step before this one left.
 inline const std::vector<Bivector>& last_angular_impulses(const Simulation& simulation,
                                                           const StepData& step) {
     return step.substep == 0 ? simulation.memory.angular_impulses : step.warm_start_angular;
 }
 
-/// What an angular impulse [N m s, world] does to the angular velocity of a body in this sub-step:
-/// that of its type and rotor. Always inlined: a call in every row of every sweep costs a step 7 %.
+/// Returns the change of a body's angular velocity by an angular impulse [N m s, world] in this
+/// sub-step, by the inertia of its type and rotor. It is always inlined: a call in every row of
+/// every sweep would slow the step.
 [[gnu::always_inline]] inline Bivector angular_response(const Simulation& simulation,
                                                         const StepData& step, BodyId id,
                                                         const Bivector& impulse) {
@@ -240,8 +245,8 @@ inline const std::vector<Bivector>& last_angular_impulses(const Simulation& simu
     return {sum[0], sum[1], sum[2], sum[3], sum[4], sum[5]};
 }
 
-/// By how much faster than its two points a contact's surfaces come together until the middle of
-/// the next sub-step [m/s]: see aim_rims().
+/// Returns by how much faster a contact's surfaces come together than its two points, until the
+/// middle of the next sub-step [m/s]: see aim_rims().
 inline double rise_of(const StepData& step, std::size_t contact) {
     return step.rises.empty() ? 0 : step.rises[contact];
 }
@@ -254,7 +259,7 @@ inline bool is_asleep(const StepData& step, BodyId id) {
     return !step.asleep.empty() && step.asleep[id] != kAwake;
 }
 
-/// Moves at a velocity of its own, which contacts do not change.
+/// Returns whether a body moves at a velocity of its own, which contacts do not change.
 inline bool is_driven(const Simulation& simulation, BodyId id) {
     if (!simulation.type_of(id).fixed) return false;
     const Bodies& bodies = simulation.bodies;

@@ -13,21 +13,23 @@ namespace tesserae {
 
 using simd::kLanes;
 
+/// One float for each lane of a batch.
 struct alignas(32) Eight {
     std::array<float, kLanes> lane = {};
 };
 
-/// The same in half the memory, to one part in 500: of what only decides how fast sweeps come
-/// nearer to the solution, and not which one it is. See simd::to_half().
+/// One number for each lane in half the memory, to one part in 500, see simd::to_half(). It is for
+/// numbers that only decide how fast sweeps converge, and not to which solution.
 struct alignas(16) RoughEight {
     std::array<std::uint16_t, kLanes> lane = {};
 };
 
-// What the coloured solver keeps of a coloured island: velocities as changes since the sub-step's
-// start, impulses, and rows of eight contacts, in float. Impulses and masses are in units of
+// The data of coloured islands, in float: velocities as changes since the sub-step's start,
+// impulses, and rows of eight contacts. Impulses and masses are in units of
 // ColouredIslands::mass_unit, so that neither leaves float's range.
 
-/// One body's record. The first one stands for all bodies that contacts do not move, all zero.
+/// The record of one body: its changes of velocity and its inverse mass. The first record stands
+/// for all bodies that contacts do not move and is all zero.
 struct alignas(64) BodyChange {
     std::array<float, 4> velocity = {};      ///< [m/s]
     std::array<float, 4> first_planes = {};  ///< angular velocity: xy xz xw yz [rad/s]
@@ -35,64 +37,67 @@ struct alignas(64) BodyChange {
     std::array<float, 4> rest = {};
 };
 
-/// The same without the masses, in as little memory as it takes.
+/// A body's changes of velocity alone, in as little memory as possible.
 struct PackedChange {
     std::array<float, 4> velocity = {}, first_planes = {};
     std::array<float, 2> rest = {};
 };
 
-/// Bodies of a coloured island whose sums are added up at once: the same for any number of threads.
+/// The number of bodies of a coloured island whose sums are added up as one piece: it is the same
+/// for any number of threads.
 constexpr std::size_t kSumPiece = 64;
 using BodySums = std::array<double, 3>;
 
-/// Inverse world inertia: the upper triangle of a symmetric 6x6 matrix, row by row.
+/// A body's inverse inertia in world axes: the upper triangle of a symmetric 6x6 matrix, row by
+/// row.
 struct alignas(32) InverseInertia {
     std::array<std::array<float, 4>, 6> entry = {};  ///< three unused
 };
-/// World inertia, column by column.
+/// A body's inertia in world axes, column by column.
 struct alignas(32) BodyInertia {
     std::array<std::array<float, 8>, 6> column = {};  ///< two rows unused
 };
 
-/// Eight pairs of bodies that share no movable body; lanes beyond the last pair are all zero.
+/// Eight pairs of bodies that share no movable body. Lanes beyond the last pair are all zero.
 struct Batch {
     std::array<std::uint32_t, kLanes> a = {}, b = {};  ///< places in ColouredIslands::bodies
     std::array<std::uint32_t, kLanes> contact = {};    ///< each pair's first
-    std::array<std::uint8_t, kLanes> points = {};      ///< each pair's contacts
+    std::array<std::uint8_t, kLanes> points = {};      ///< each pair's number of contacts
     std::uint32_t row = 0;                             ///< first of its rows
     std::uint32_t rows = 0;                            ///< the most points of a lane
     std::uint32_t response = 0;  ///< first of its point responses, see responses_of()
-    bool slides = false;         ///< any of its points did in the last sweep
+    bool slides = false;         ///< some point slid in the last sweep
 };
 
-/// Points that a batch with so many rows is worked on as if it had.
+/// Returns the number of points for which the kernels are compiled that a batch with so many rows
+/// takes.
 constexpr std::uint32_t padded_points(std::uint32_t rows) {
     return rows > 4 ? 8 : rows > 2 ? 4 : rows;
 }
 static_assert(kManifoldPoints == 8);
-/// How many responses of points to each other such a batch has: the lower triangle of a symmetric
-/// matrix, row by row.
+/// Returns the number of responses of points to each other in a batch with so many rows: the lower
+/// triangle of a symmetric matrix, row by row.
 constexpr std::uint32_t responses_of(std::uint32_t rows) {
     return padded_points(rows) * (padded_points(rows) + 1) / 2;
 }
 
-/// The normal part of a row: its mass and the target of the first pass, see ContactTargets. All
-/// targets are less the normal velocity of the start.
+/// The normal part of a row: its mass and the target of the first pass, see ContactTargets. The
+/// normal velocity of the start is subtracted from all targets.
 struct NormalRow {
     Eight mass, target;
 };
 
-/// Impulses on b of rows with so many tangents, but for rolling: along the normal, and across it
-/// if there is friction.
+/// The impulses on b of rows with so many tangents, without rolling: along the normal, and across
+/// it if there is friction.
 template <std::size_t kTangents, class Lanes = Eight>
 struct RowImpulses {
     std::vector<Lanes> normal;
     std::vector<std::array<Lanes, kTangents>> tangent;
 };
 
-/// A contact of two round bodies (or of one and a body that contacts do not move): the normal goes
-/// through both centres, so that the normal impulse turns nothing and the response is the same
-/// along every tangent.
+/// A contact of two round bodies, or of one and a body that contacts do not move. The normal goes
+/// through both centres: the normal impulse turns nothing, and the response is the same along every
+/// tangent.
 struct RoundRow {
     std::array<Eight, 4> normal;
     NormalRow along;
@@ -100,45 +105,45 @@ struct RoundRow {
 struct RoundFriction {
     Eight arm_a, arm_b;  ///< from the centres to the contact point, along n and against it [m]
     Eight friction, mass;
-    std::array<Eight, 4> slip;  ///< of the start [m/s]
+    std::array<Eight, 4> slip;  ///< slip at the start [m/s]
 };
 
 /// Rolling and twisting of a round pair together, as bivectors.
 struct RoundRolling {
     Eight arm;                     ///< see RollingRow
     Eight mass;                    ///< the same for rolling and twisting, about any plane
-    std::array<Eight, 6> turning;  ///< of b against a at the start [rad/s]
+    std::array<Eight, 6> turning;  ///< angular velocity of b relative to a at the start [rad/s]
     std::array<Eight, 6> impulse;  ///< on b
 };
 
-/// Of all points of each pair: their frame, whose centre is in the midst of them and as high along
-/// the normal as the deepest. The reflection v - (h.v) h, with |h|^2 = 2, takes the normal n to
-/// g w, where g = -1 if h_w >= 0, else 1, and the tangents to x, y, z. Along the normal are the
-/// velocity along n and the turning in xn, yn, zn: what normal impulses change and see.
+/// The frame of all points of a pair. Its centre is the mean of the points, as high along the
+/// normal as the deepest. The reflection v - (h.v) h, with |h|^2 = 2, takes the normal n to g w,
+/// where g = -1 if h_w >= 0, else 1, and the tangents to x, y, z. Motion "along the normal" is the
+/// velocity along n and the turning in xn, yn, zn, on which normal impulses act.
 struct PairFrame {
     std::array<Eight, 4> h;
     std::array<Eight, 4> centre_a, centre_b;  ///< from the bodies' centres [m]
-    std::array<Eight, 4> motion;              ///< of b against a at the start, along the normal
+    std::array<Eight, 4> motion;              ///< of b relative to a at the start, along the normal
 };
-/// Of bodies that do not turn alike in all planes: what InverseInertia has of each lane's.
+/// The entries of InverseInertia for each lane, of bodies that are not isotropic.
 using LaneInertia = std::array<Eight, 21>;
 struct PairInertia {
     LaneInertia a, b;
 };
-/// What impulses do to the motion across the normal, which friction changes and sees: the velocity
-/// along x, y, z and the turning in xy, xz, yz.
+/// The response of the motion across the normal, on which friction acts: the velocity along x, y, z
+/// and the turning in xy, xz, yz.
 template <class Lanes>
 struct AcrossResponse {
-    std::array<Lanes, 21> across;               ///< of impulses across the normal: symmetric
-    std::array<std::array<Lanes, 6>, 4> along;  ///< of those along it
+    std::array<Lanes, 21> across;               ///< to impulses across the normal: symmetric
+    std::array<std::array<Lanes, 6>, 4> along;  ///< to impulses along the normal
 };
 struct PairFriction {
     Eight friction;
-    std::array<Eight, 6> motion;  ///< of b against a at the start, across the normal
+    std::array<Eight, 6> motion;  ///< of b relative to a at the start, across the normal
     AcrossResponse<RoughEight> response;
 };
-/// A contact of any two bodies. Its height above the frame's centre is left out: points of one pair
-/// that bear a load are in one plane, but for their overlaps.
+/// A contact of any two bodies. Its height over the frame's centre is left out: the points of one
+/// pair that bear a load lie in one plane, apart from their overlaps.
 struct GeneralRow {
     std::array<Eight, 3> at;  ///< from the frame's centre [m]
     NormalRow along;
@@ -148,7 +153,7 @@ struct GeneralFriction {
     RoughEight slide_mass;           ///< below the inverse of the largest response
 };
 
-/// Rolling, which turns in xn, yn, zn, and twisting, in xy, xz, yz.
+/// The rolling of a pair, in the planes xn, yn, zn, and its twisting, in xy, xz, yz.
 struct PairRolling {
     Eight arm;                                         ///< see RollingRow
     std::array<Eight, 10> response;                    ///< to impulses along the normal: symmetric
@@ -159,7 +164,7 @@ struct GeneralRolling {
     std::array<Eight, 6> impulse;  ///< on b; rolling, then twisting
 };
 
-/// Batches begin <= i < end.
+/// The batches begin <= i < end of a list.
 struct BatchRange {
     std::uint32_t begin, end;
 };
@@ -170,23 +175,21 @@ struct ColourBatches {
 /// The coloured islands of a sub-step, one behind the other: their bodies, their batches in order
 /// of colours, and a row for each point of a batch.
 struct ColouredIslands {
-    bool friction = false;                  ///< of any body type; else there are no such rows
-    bool rolling = false;                   ///< likewise of rolling friction
-    bool turns_unevenly = false;            ///< any body is not isotropic
-    bool slender = false;                   ///< any body is: see kSlender
+    bool friction = false;                  ///< some body has friction; else there are no such rows
+    bool rolling = false;                   ///< some body has rolling friction, likewise
+    bool turns_unevenly = false;            ///< some body is not isotropic
+    bool slender = false;                   ///< some body is slender, see kSlender
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
-    std::vector<std::uint32_t>
-        first_colour;               ///< likewise; an island's last one is what is left over
-    std::vector<double> mass_unit;  ///< of every coloured island, a power of two [kg]
+    std::vector<std::uint32_t> first_colour;  ///< likewise; each last colour has what is left over
+    std::vector<double> mass_unit;            ///< of every coloured island, a power of two [kg]
     std::vector<BodyId> bodies;
     std::vector<ColourBatches> colours;
     std::vector<Batch> round, general;
     std::uint32_t general_rows = 0, point_responses = 0;  ///< of `general`, in all
 
     std::vector<BodyChange> changes;  ///< of `bodies`
-    // Of the present pair of sweeps, see conjugate.hpp: what `bodies` and the rows' impulses began
-    // with, x, and the direction, p; and what the warm start's impulses did before, see
-    // take_warm_start().
+    // State of the present pair of sweeps, see conjugate.hpp: changes and impulses at its start, x,
+    // and the direction, p; and the changes by the warm start, see take_warm_start().
     std::vector<PackedChange> last_changes, direction, warm_start;
     std::vector<BodySums> body_sums;  ///< of pieces of each island's `bodies`
     RowImpulses<4> last_round;
@@ -194,7 +197,7 @@ struct ColouredIslands {
     RowImpulses<4, RoughEight> round_direction;
     RowImpulses<3, RoughEight> general_direction;
     std::vector<std::array<double, 2>> round_work, general_work;  ///< sums of each batch
-    // Of `bodies`, if any turns unevenly.
+    // Inertias of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions
     RowImpulses<4> round_impulses;              ///< of `round`, in world axes
@@ -206,13 +209,14 @@ struct ColouredIslands {
     std::vector<PairFrame> frames;              ///< of `general`
     std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
     std::vector<PairFriction> pair_friction;    ///< likewise
-    /// Likewise, if any body is slender: instead of PairFriction::response. The rounding of what a
-    /// moment about its length does would be more than what any other does.
+    /// Responses of `general`, if any body is slender, instead of PairFriction::response. The
+    /// rounding of the response to a moment about its length would exceed the response to any
+    /// other.
     std::vector<AcrossResponse<Eight>> slender_response;
     std::vector<GeneralRow> rows;  ///< of `general`, see Batch::row
     std::vector<Eight> second;     ///< likewise: the second pass's targets
-    /// Of `general`, see Batch::response: what a unit impulse along the normal at one point changes
-    /// of the velocity along it at another; 0 for points that a batch does not have.
+    /// Point responses of `general`, see Batch::response: the change of the normal velocity at one
+    /// point by a unit normal impulse at another; 0 for points that a batch does not have.
     std::vector<RoughEight> point_response;
     std::vector<GeneralFriction> general_friction;  ///< likewise
     std::vector<PairRolling> pair_rolling;          ///< of `general`

@@ -6,18 +6,18 @@
 #include "core/dynamics/solver/kernels/place.hpp"
 #include "core/dynamics/solver/kernels/row.hpp"
 
-// Batches of pairs that are not round are made from their contacts.
+// Makes batches of pairs that are not round from their contacts.
 namespace tesserae::lanes {
 
-/// What a unit impulse at a pair's centre along each axis, and a unit moment in each plane, changes
-/// there: symmetric.
+/// The response at a pair's centre to a unit impulse along each axis and to a unit moment in each
+/// plane. It is symmetric.
 template <class F>
 struct CentreResponse {
-    std::array<LaneVec4<F>, 4> straight{};     ///< velocity by impulses
-    std::array<LaneVec4<F>, 6> coupled{};      ///< velocity by moments; turning by impulses
-    std::array<LaneBivector<F>, 6> turning{};  ///< by moments
+    std::array<LaneVec4<F>, 4> straight{};     ///< velocity, to impulses
+    std::array<LaneVec4<F>, 6> coupled{};      ///< velocity, to moments; turning, to impulses
+    std::array<LaneBivector<F>, 6> turning{};  ///< turning, to moments
 };
-/// The entries of each plane's, of the vectors' axis.
+/// Returns one component of the vectors of all planes.
 template <class F>
 [[gnu::always_inline]] inline LaneBivector<F> of_axis(const std::array<LaneVec4<F>, 6>& of_planes,
                                                       std::size_t axis) {
@@ -26,8 +26,8 @@ template <class F>
     return b;
 }
 
-/// Adds a body's part, but for its mass: an impulse p has the moment c ^ p, and w.(c ^ p) is
-/// p.velocity_at(w, c).
+/// Adds a body's part of the response, without its mass. An impulse p has the moment c ^ p, and
+/// w.(c ^ p) is p.velocity_at(w, c).
 template <class F, bool kUneven>
 [[gnu::always_inline]] inline void add_turning(const Inverse<F, kUneven>& inverse,
                                                const LaneVec4<F>& centre, CentreResponse<F>& to) {
@@ -42,7 +42,7 @@ template <class F, bool kUneven>
         to.straight[axis] = to.straight[axis] + velocity_at(of_axis(coupled, axis), centre);
 }
 
-/// From the world's axes to the frame's.
+/// Returns a response in the frame's axes from that in the world's.
 template <class F>
 [[gnu::always_inline]] inline CentreResponse<F> reflected(const Frame<F>& frame,
                                                           const CentreResponse<F>& of) {
@@ -66,13 +66,13 @@ template <class F>
     return to;
 }
 
-/// A pair's responses to impulses along the normal and across it: symmetric.
+/// The responses of a pair to impulses along the normal and across it. They are symmetric.
 template <class F>
 struct Responses {
     std::array<F, 10> along;
     std::array<F, 21> across;
 };
-/// x, unless it is a speck beside this.
+/// Returns x, or 0 if it is negligible beside another entry, see kSpeck.
 template <class F>
 [[gnu::always_inline]] inline F unless_speck(F x, F beside) {
     return magnitude(x) < static_cast<float>(kSpeck) * beside ? F{} : x;
@@ -94,7 +94,7 @@ template <class F>
             response.straight[i][j] = unless_speck(response.straight[i][j], straight);
 }
 
-/// The planes that turn in xn yn zn and in xy xz yz, see FrameScrew.
+/// The numbers of the planes xn yn zn and of the planes xy xz yz, see FrameScrew.
 constexpr std::array<std::size_t, 3> kAlong = {2, 4, 5}, kAcross = {0, 1, 3};
 template <bool kFriction, class F, bool kUneven>
 [[gnu::always_inline]] inline void make_frame(const Lane<F>& lane, const LanePair<F, kUneven>& pair,
@@ -134,8 +134,8 @@ template <bool kFriction, class F, bool kUneven>
     }
 }
 
-/// The masses of rolling or twisting: of a block of three of a response.
-/// @param first   of its rows
+/// Computes the masses of rolling or twisting from a block of three of a response.
+/// @param first   first row of the block
 template <std::size_t kSize, class F, std::size_t kEntries>
 [[gnu::always_inline]] inline void make_turning(const Lane<F>& lane,
                                                 const std::array<F, kEntries>& response,
@@ -152,8 +152,8 @@ template <std::size_t kSize, class F, std::size_t kEntries>
     lane.store(step, step_mass);
 }
 
-/// The angular impulse that a point starts from, in world axes at first; what the present normal
-/// impulse does not allow is left out.
+/// Starts a point's angular impulse, which is given in world axes, clamped to what its present
+/// normal impulse allows.
 template <class F>
 [[gnu::always_inline]] inline void start_point_rolling(const Lane<F>& lane, const Frame<F>& frame,
                                                        F most, GeneralRolling& row,
@@ -171,13 +171,13 @@ template <class F>
     }
 }
 
-/// The velocity across the normal at a place by turning in xy xz yz alone.
+/// Returns the velocity across the normal at a place by turning in xy xz yz alone.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> turned_at(const Place<F>& at, F xy, F xz, F yz) {
     const auto& [x, y, z] = at;
     return {-fused(y, xy, z * xz), fused(x, xy, -(z * yz)), fused(x, xz, y * yz), F{}};
 }
-/// A block of three of the tangents at a place, xx xy xz yy yz zz.
+/// Returns the response of the three tangents at a place: xx xy xz yy yz zz.
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 6> tangent_response(const std::array<F, 21>& across,
                                                                 const Place<F>& at) {
@@ -196,8 +196,8 @@ template <class F>
     return K;
 }
 
-/// What a unit impulse at a point does at those before it and at itself.
-/// @param motion   what it changes of the motion along the normal
+/// Writes the response to a unit impulse at a point, at this point and at those before it.
+/// @param motion   change of the motion along the normal by the impulse
 template <class F>
 [[gnu::always_inline]] inline void store_responses(const Lane<F>& lane, ColouredIslands& coloured,
                                                    const Batch& batch, std::uint32_t point,
@@ -207,7 +207,7 @@ template <class F>
         lane.in_responses().store(along_at(place_of(lane, coloured.rows[batch.row + k]), motion),
                                   row[k]);
 }
-/// Of the points that the batch does not have.
+/// Writes the responses of points that the batch does not have.
 template <class F>
 [[gnu::always_inline]] inline void store_padding(const Lane<F>& lane, ColouredIslands& coloured,
                                                  const Batch& batch) {
@@ -216,7 +216,8 @@ template <class F>
         lane.in_responses().store(F{}, first[k]);
 }
 
-/// What depends on where the bodies are: the same for an impact and for the load after it.
+/// Makes the part of the rows that depends on where the bodies are. It is the same for an impact
+/// and for the load after it.
 template <bool kFriction, bool kRolling, bool kUneven, class F>
 [[gnu::always_inline]] inline void make_points(ColouredIslands& coloured, const Lane<F>& lane,
                                                std::uint32_t index, const EightPairs& pairs) {
@@ -275,7 +276,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     store_padding(lane, coloured, batch);
 }
 
-/// What depends on how they move, and the impulses to start from.
+/// Makes the part of the rows that depends on how the bodies move, and their first impulses.
 template <bool kFriction, bool kRolling, bool kUneven, class F>
 [[gnu::always_inline]] inline void start_points(ColouredIslands& coloured, const Lane<F>& lane,
                                                 std::uint32_t index, const EightPairs& pairs) {
@@ -304,7 +305,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
         for (std::size_t i = 0; i < 4; ++i)
             impulse.along[i] = fused(normal_impulse, unit[i], impulse.along[i]);
         if constexpr (kFriction) {
-            // The normal may have turned since the impulse was.
+            // The normal may have turned since the last step.
             LaneVec4<F> tangent = frame.reflected(load(in_pairs, pairs.points[k].impulse));
             tangent[3] = F{};
             const F most =
@@ -324,8 +325,8 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     LanePair<F, kUneven>(lane, coloured, index).apply(frame.to_world(impulse));
 }
 
-/// Makes a batch's rows, or those of two, unless they are those of the impact before, and applies
-/// the impulses that they start from.
+/// Makes the rows of a batch, or of two, unless an impact has made them before, and applies the
+/// impulses that they start from.
 template <bool kFriction, bool kRolling, bool kUneven, class F>
 [[gnu::always_inline]] inline void start_pairs(ColouredIslands& coloured, const Lane<F>& lane,
                                                std::uint32_t index, bool made,

@@ -8,17 +8,19 @@
 // Sweeps over batches of pairs that are not round.
 namespace tesserae::lanes {
 
-/// Whether any point of a batch slides: where some did in the last sweep most will again, and
-/// asking each of them costs more, by mispredicted branches, than to work out how they do.
+/// Finds out whether any point of a batch slides. Where some did in the last sweep, most will
+/// again. Asking each of them then costs more, by mispredicted branches, than computing how it
+/// slides.
 template <class F>
 struct Sliding {
     bool expected;
-    F excess{};  ///< of a point's squared impulse over what is allowed, the largest
+    F excess{};  ///< largest excess of a point's squared impulse over what is allowed
 
     bool any() const { return !simd::nowhere_above(excess, F{}); }
 };
 
-/// friction_impulse() of the one-by-one solver, in the frame; solve_part() of its rolling rows.
+/// Returns the friction impulse of a point as friction_impulse() of the one-by-one solver does, in
+/// the frame, or the rolling impulse as solve_part() does.
 template <class F, class Mass>
 [[gnu::always_inline]] inline LaneVec4<F> friction_impulse(
     const Lane<F>& lane, const std::array<Mass, 6>& masses, const Mass& slide_mass,
@@ -37,7 +39,7 @@ template <class F, class Mass>
     return only(holds, only(squared <= allowed, sticking, sliding), {});
 }
 
-/// What is worked on while a batch's points are solved.
+/// The batch whose points are solved, and the sweep over it.
 template <class F>
 struct PairSweep {
     ColouredIslands& coloured;
@@ -45,20 +47,21 @@ struct PairSweep {
     Sweep sweep;
     const Batch& batch = batches[0];
 
-    /// Row of a point, in the sweep's order.
+    /// Returns the row of a point, in the order of the sweep.
     [[gnu::always_inline]] std::uint32_t row(std::uint32_t i) const {
         return batch.row + (sweep.backward ? batch.rows - 1 - i : i);
     }
 };
 
-/// A pair's motion while its points are solved, and what has been changed, seen from the centre.
-/// Impulses along the normal change the motion along it at once, and that across it by see_along();
-/// the same the other way round.
+/// The motion of a pair while its points are solved, and the impulses on it so far, both at the
+/// centre. Impulses along the normal change the motion along it at once and that across it by
+/// see_along(); impulses across the normal do the reverse.
 template <class F>
 struct PairMotion {
     FrameScrew<F> motion, impulse{};
 
-    /// @param change   of the impulses, since it was last seen
+    /// Changes the motion across the normal by impulses along it.
+    /// @param change   change of the impulses since the last call
     [[gnu::always_inline]] void see_along(const Lane<F>& lane, ColouredIslands& coloured,
                                           std::uint32_t index, const std::array<F, 4>& change) {
         with_response(lane, coloured, index, [&](const auto& in, const auto& response) {
@@ -77,9 +80,10 @@ struct PairMotion {
     }
 };
 
-/// All points' normal impulses, in the order of the sweep and then the other way round: its own
-/// adjoint. What comes last has its way, and so a pair that is gone through one way only leans.
-/// Not inlined: the points' velocities then have the registers to themselves.
+/// Solves the normal impulses of all points, in the order of the sweep and then in reverse, which
+/// is its own adjoint. The points that come last get closest to their aim, so that pairs lean if
+/// they are gone through in one order only. It is not inlined: the points' velocities then have all
+/// registers.
 /// @return the largest velocity that was left to solve, if it is measured
 template <std::size_t kPoints, class F>
 [[gnu::noinline]] F solve_normals_of(const PairSweep<F>& pair, const Lane<F>& lane,
@@ -115,7 +119,7 @@ template <class F>
     left = larger(left, solve());
 }
 
-/// A point's friction.
+/// The friction of one point.
 template <class F>
 struct FrictionPoint {
     std::array<Eight, 3>& impulse;
@@ -128,12 +132,13 @@ struct FrictionPoint {
         : impulse(pair.coloured.impulses.tangent[k]),
           row(pair.coloured.general_friction[k]),
           at(place_of(lane, pair.coloured.rows[k])),
-          // Along a direction a normal impulse may have got below 0.
+          // A step along a direction may have made a normal impulse negative.
           most(mu *
                larger(lane.template in_row<Eight>().load(pair.coloured.impulses.normal[k]), F{})) {}
 
-    /// @param share   of the slip that it ends
-    /// @return the change of its impulse
+    /// Does one step of the point's friction.
+    /// @param share   part of the slip that it ends
+    /// @return the change of the impulse
     [[gnu::always_inline]] LaneVec4<F> solve(const Lane<F>& lane, const std::array<F, 6>& motion,
                                              F share, Sliding<F>& slides) const {
         const auto& in = lane.template in_row<std::array<Eight, 3>>();
@@ -144,7 +149,7 @@ struct FrictionPoint {
         store(in, all, impulse);
         return all - old;
     }
-    /// The square of the velocity that was left to solve.
+    /// Returns the square of the velocity that was left to solve.
     [[gnu::always_inline]] F squared_left(const Lane<F>& lane, const LaneVec4<F>& change,
                                           F share) const {
         const auto& in = lane.template in_row<GeneralFriction>();
@@ -152,11 +157,10 @@ struct FrictionPoint {
     }
 };
 
-/// The same of friction, across the normal: two points at a time, the first and the last and so on
-/// inward, each of which ends half of its slip if both bear a load. So they do no more than one
-/// after the other, as what they do to each other is at most the mean of what they do to
-/// themselves; they need not wait for each other, and the pair's motion is worked out half as
-/// often.
+/// Solves the friction of all points, two at a time: the first and the last, and so on inward. Each
+/// ends half of its slip if both bear a load. This does not overshoot, as their response to each
+/// other is at most the mean of their own responses. Two points need not wait for each other, and
+/// the pair's motion is computed half as often.
 template <class F>
 [[gnu::always_inline]] inline void solve_friction(const Lane<F>& lane, const PairSweep<F>& pair,
                                                   std::uint32_t index, PairMotion<F>& of, F& left) {
@@ -196,9 +200,9 @@ template <class F>
     for (Batch& batch : pair.batches) batch.slides = any;
 }
 
-/// Rolling or twisting of all points.
-/// @param motion, impulse, response   along or across the normal, where three from `first` on turn
-/// @param part                        where a row's impulses begin
+/// Solves the rolling or the twisting of all points.
+/// @param motion, impulse, response   along or across the normal; the three from `first` on turn
+/// @param part                        place of a row's first impulse
 template <class F, std::size_t kSize, std::size_t kEntries>
 [[gnu::always_inline]] inline void solve_turning(const Lane<F>& lane, const PairSweep<F>& pair,
                                                  std::size_t first, F arm,
@@ -244,7 +248,8 @@ template <class F>
                   of.impulse.across);
 }
 
-/// Normal impulses, friction, rolling, twisting, each after what those before it have done.
+/// Solves normal impulses, friction, rolling and twisting in this order; each sees the changes by
+/// those before it.
 template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline void solve_parts(const Lane<F>& lane, const PairSweep<F>& pair,
                                                std::uint32_t index, PairMotion<F>& of, F& left) {
@@ -264,7 +269,8 @@ template <bool kFriction, bool kRolling, class F>
         }
     }
 }
-/// The same from the last to the first, without rolling, with which there are no adjoints.
+/// Solves friction and then normal impulses: the adjoint of solve_parts(). It has no rolling, with
+/// which there is no adjoint.
 template <bool kFriction, class F>
 [[gnu::always_inline]] inline void solve_parts_adjoint(const Lane<F>& lane,
                                                        const PairSweep<F>& pair,
@@ -277,7 +283,7 @@ template <bool kFriction, class F>
     solve_normals(lane, pair, of, left);
 }
 
-/// One sweep over a batch, or over two.
+/// Does one sweep over a batch, or over two.
 /// @return the largest velocity that was left to solve, if it is measured
 template <bool kFriction, bool kRolling, bool kUneven, class F>
 [[gnu::always_inline]] inline F solve_points(ColouredIslands& coloured, const Lane<F>& lane,

@@ -4,30 +4,31 @@
 
 #include "core/dynamics/solver/kernels/lanes.hpp"
 
-// Contacts as they are put into rows: of each lane, not yet side by side.
+// Contacts as they are put into rows: lane by lane, not yet side by side.
 namespace tesserae::lanes {
 
 /// Four floats of each lane, as they are put into rows.
 using Fours = std::array<std::array<float, 4>, kLanes>;
 
-/// What slip_by_turning() is of; where one body's turning counts whatever the other's is, it is
-/// that of both.
+/// The motions from which slip_by_turning() is computed. If only one body's turning counts, both a
+/// and b have it.
 struct EightTurning {
     Fours a, b;     ///< angular velocities: xy xz xw yz
     Fours last;     ///< yw zw of a, of b
-    Fours against;  ///< how b moves against a, before gravity
+    Fours against;  ///< velocity of b relative to a, before gravity
 };
 
-/// A contact of each lane's round bodies. All zero where a lane has none.
+/// One contact of round bodies for each lane. It is all zero where a lane has none.
 struct alignas(32) EightPoints {
     Fours normal, r_a, r_b;
-    Fours velocity;  ///< relative, of the start
-    Fours impulse;   ///< the tangent one, to start from
+    Fours velocity;  ///< relative velocity at the start
+    Fours impulse;   ///< the tangent impulse to start from
     Fours along;     ///< targets of both passes, whether there is one (1), normal impulse
     EightTurning turning;
 };
 
-/// A pair of each lane and its points, of any bodies. All zero where a lane has no pair or point.
+/// A pair of any bodies and its points for each lane. It is all zero where a lane has no pair or
+/// point.
 struct alignas(32) EightPairs {
     struct Points {
         Fours place;  ///< from the centre
@@ -35,8 +36,8 @@ struct alignas(32) EightPairs {
     };
     Fours normal;
     Fours centre_a, centre_b;      ///< from the bodies' centres
-    Fours velocity;                ///< of b against a at the centre, at the start
-    std::array<Eight, 6> turning;  ///< likewise
+    Fours velocity;                ///< of b relative to a at the centre, at the start
+    std::array<Eight, 6> turning;  ///< relative angular velocity at the start
     Eight rounding;                ///< see least_response()
     std::array<Points, kManifoldPoints> points;
 };

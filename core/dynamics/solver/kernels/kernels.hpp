@@ -8,17 +8,17 @@
 
 namespace tesserae {
 
-/// How many lanes are worked on at a time: the results are the same bits. Batches whose pairs share
-/// movable bodies need kOne, which goes through the lanes in order. kSixteen, where the CPU has it,
-/// sweeps two batches at once: a sweep waits for one operation after the other, not for their
-/// number.
+/// The number of lanes that are worked on at a time. The results have the same bits. Batches whose
+/// pairs share movable bodies need kOne, which goes through the lanes in order. kSixteen sweeps two
+/// batches at once, where the CPU has it: a sweep waits for one operation after the other, so that
+/// two batches take little longer than one.
 enum class LaneCount { kOne, kEight, kSixteen };
-/// The most that this CPU has.
+/// Returns the largest number of lanes that this CPU has.
 LaneCount most_lanes();
 
-/// Calls work(BatchRange) for all batches in the order of a sweep: for two neighbours that have as
-/// many rows at once, else for one.
-/// @return the largest that it returns, at least 0
+/// Calls work(BatchRange) for all batches in the order of a sweep: for two neighbours at once if
+/// both have the same number of rows, else for one.
+/// @return the largest result, at least 0
 template <class Work>
 double largest_of_twos(const std::vector<Batch>& all, BatchRange batches, bool backward,
                        const Work& work) {
@@ -35,32 +35,34 @@ double largest_of_twos(const std::vector<Batch>& all, BatchRange batches, bool b
     return largest;
 }
 
-/// Without the entries that are specks beside the diagonal, see kSpeck.
+/// Returns a map with 0 for the entries that are negligible beside its diagonal, see kSpeck.
 inline BivectorMap without_specks(const BivectorMap& map) {
     const double least = kSpeck * map.diagonal().cwiseAbs().maxCoeff();
     return (map.array().abs() < least).select(BivectorMap::Zero(), map);
 }
 
-/// What a coloured island's batches are made into and from.
+/// What the kernels need to know of a coloured island and the pass over it.
 struct ColouredStage {
     const Simulation& simulation;
     StepData& step;
     double mass_unit;  ///< [kg]
     Cause cause = Cause::kLoad;
     Parting parting = {};
-    bool friction = true;  ///< false: without
-    bool made = false;  ///< the rows are those of the impact before, but for what they start from
+    bool friction = true;  ///< false: friction is left out
+    bool made = false;  ///< the rows are there from the impact before, but for what they start from
 };
 
-// Of round and of general batches: makes their rows and applies the impulses that they start from;
-// one iteration; step.impulses of their contacts, or of an impact step.hit. Batches of one colour
-// may be worked on at the same time.
+// The functions for round batches and for general ones do the same. Batches of one colour may be
+// worked on at the same time.
 
+/// Makes the rows of round batches and applies the impulses that they start from.
 void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
+/// Does one sweep over round batches.
 /// @return the largest velocity_left() [m/s] if it is measured, else 0
 double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes);
+/// Writes step.impulses of the batches' contacts, or step.hit after an impact.
 void keep_round(const ColouredStage& stage, BatchRange batches);
-/// What the impulses that the rows start from have changed becomes a part of the start.
+/// Makes what the warm start has changed a part of the start of the rows.
 void take_warm_start_round(const ColouredStage& stage, BatchRange batches);
 
 void start_general(const ColouredStage& stage, BatchRange batches, LaneCount lanes);
@@ -68,9 +70,10 @@ double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep
 void keep_general(const ColouredStage& stage, BatchRange batches);
 void take_warm_start_general(const ColouredStage& stage, BatchRange batches);
 
-/// See LoadWork::work [mass units m^2/s^2]: of the impulses of a batch's rows.
+/// Returns the work of a batch's impulses as LoadWork::work has it [mass units m^2/s^2].
 double load_work_of_round(const ColouredStage& stage, std::uint32_t batch);
 double load_work_of_general(const ColouredStage& stage, std::uint32_t batch);
+/// Multiplies the impulses of the batches by a part.
 void leave_part_of_round(const ColouredStage& stage, BatchRange batches, float part);
 void leave_part_of_general(const ColouredStage& stage, BatchRange batches, float part);
 

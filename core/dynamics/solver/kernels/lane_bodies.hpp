@@ -5,7 +5,7 @@
 
 #include "core/dynamics/solver/kernels/lanes.hpp"
 
-// The changes of bodies, of one body for each lane.
+// The changes of one body for each lane.
 namespace tesserae::lanes {
 
 /// The motion of each lane's body.
@@ -16,13 +16,13 @@ struct Motion {
     F inverse_mass, inverse_inertia;
 };
 
-/// BodyChange
+/// The BodyChange of one body of each lane.
 template <class F>
 struct LaneChange {
     std::array<F, 4> velocity, first_planes, rest;
 };
 
-/// Where the records are, and where they are written to: the first of all is only read.
+/// Finds where the records are read and written. The first record of all is only read.
 template <class F, std::size_t kCount>
 [[gnu::always_inline]] inline void find_records(const Lane<F>& in_batch,
                                                 const std::array<std::uint32_t, kLanes>& places,
@@ -57,7 +57,7 @@ template <class F, std::size_t kCount>
 }
 
 #ifdef __AVX512F__
-/// Eight addresses at a time.
+/// Finds the records of sixteen lanes, eight addresses at a time.
 [[gnu::always_inline]] inline void find_records(const Lane<Float16>& in_batch,
                                                 const std::array<std::uint32_t, kLanes>& places,
                                                 BodyChange* records, BodyChange* nowhere,
@@ -79,7 +79,7 @@ template <class F, std::size_t kCount>
     asm("" : "+m"(from), "+m"(to));
 }
 
-/// Fours of lanes as a matrix of four by four, transposed.
+/// Transposes a matrix of four by four whose entries are fours of lanes.
 [[gnu::always_inline]] inline std::array<Float16, 4> fours_transposed(
     const std::array<Float16, 4>& r) {
     const Float16 a = _mm512_shuffle_f32x4(r[0], r[1], 0x44);
@@ -90,7 +90,7 @@ template <class F, std::size_t kCount>
             _mm512_shuffle_f32x4(b, d, 0x88), _mm512_shuffle_f32x4(b, d, 0xdd)};
 }
 static_assert(sizeof(BodyChange) == sizeof(Float16));
-/// Whole records: as many reads and writes as bodies, and not three times as many.
+/// Loads whole records of sixteen bodies: one read for each body instead of three.
 [[gnu::always_inline]] inline void load_changes(
     const std::array<const BodyChange*, 2 * kLanes>& from, LaneChange<Float16>& to) {
     std::array<std::array<Float16, 4>, 4> r;  // of four bodies each
@@ -131,7 +131,8 @@ class LaneBodies {
     LaneBodies(const LaneBodies&) = delete;
     LaneBodies& operator=(const LaneBodies&) = delete;
 
-    /// kTurns: with the angular velocity.
+    /// Loads the bodies' motion.
+    /// @tparam kTurns   with the angular velocity
     template <bool kTurns>
     [[gnu::always_inline]] Motion<F> load() const {
         LaneChange<F> of;

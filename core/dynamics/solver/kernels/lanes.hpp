@@ -6,18 +6,19 @@
 #include "core/dynamics/solver/kernels/coloured_islands.hpp"
 #include "core/simd/simd.hpp"
 
-// The solver's kernels are templates over F, float, Float8 or Float16: they work on one lane of a
-// batch, on all eight, or on those of two batches, of which the second lies right behind the first
-// and has as many rows. Every operation is rounded as IEEE says, element by element, so that all
-// give the same bits.
+// The solver's kernels are templates over F: float, Float8 or Float16. They work on one lane of a
+// batch, on all eight, or on the lanes of two batches. The second of two batches lies right behind
+// the first and has as many rows. Every operation is rounded as IEEE says, element by element, so
+// that all give the same bits.
 
 namespace tesserae::lanes {
 
 using simd::Float4, simd::Float8, simd::Float16;
 using simd::fused, simd::larger, simd::magnitude, simd::square_root, simd::largest_lane;
 
-/// Which lanes of a batch are worked on. What is loaded and stored is of the batch's only T, of its
-/// T for each row, or of its responses: of two batches each has its own.
+/// The lanes of a batch that are worked on. in_batch(), in_row() and in_responses() are for loads
+/// and stores of data that a batch has once, once for each row, and once for each point response.
+/// They differ where two batches are worked on: each has its own data.
 template <class F>
 struct Lane;
 template <class F>
@@ -38,7 +39,7 @@ struct LaneOfOneBatch {
 template <>
 struct Lane<Float8> : LaneOfOneBatch<Float8> {
     static constexpr std::size_t first = 0, count = kLanes;
-    /// What the i-th lane has.
+    /// Returns the item of the i-th lane.
     template <class T>
     [[gnu::always_inline]] const T& at(const std::array<T, kLanes>& of, std::size_t i) const {
         return of[i];
@@ -117,7 +118,7 @@ class Lane<Float16> {
 
   private:
     Lane(std::uint32_t rows, std::size_t apart) : rows_(rows), apart_(apart) {}
-    /// What the second batch has instead.
+    /// Returns the item of the second batch that corresponds to one of the first.
     template <class T>
     [[gnu::always_inline]] const T& beside(const T& of_first) const {
         return *reinterpret_cast<const T*>(reinterpret_cast<const char*>(&of_first) + apart_);
@@ -174,7 +175,7 @@ class Lane<Float16> {
 }
 
 #ifdef __AVX512F__
-/// Each four lanes as a matrix of four by four, transposed.
+/// Transposes each four lanes as a matrix of four by four.
 [[gnu::always_inline]] inline std::array<Float16, 4> transposed(const std::array<Float16, 4>& r) {
     const Float16 a = _mm512_unpacklo_ps(r[0], r[1]), b = _mm512_unpackhi_ps(r[0], r[1]);
     const Float16 c = _mm512_unpacklo_ps(r[2], r[3]), d = _mm512_unpackhi_ps(r[2], r[3]);
@@ -224,13 +225,13 @@ template <class F>
 [[gnu::always_inline]] inline F dot(const LaneVec4<F>& a, const LaneVec4<F>& b) {
     return fused(a[0], b[0], a[1] * b[1]) + fused(a[2], b[2], a[3] * b[3]);
 }
-/// a + k b
+/// Returns a + k b.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> sum(const LaneVec4<F>& a, F k, const LaneVec4<F>& b) {
     return {fused(k, b[0], a[0]), fused(k, b[1], a[1]), fused(k, b[2], a[2]), fused(k, b[3], a[3])};
 }
 
-/// Planes in the order xy xz xw yz yw zw, as everywhere.
+/// A bivector for each lane. Planes are in the order xy xz xw yz yw zw, as everywhere.
 template <class F>
 struct LaneBivector {
     std::array<F, 6> c;
@@ -260,7 +261,7 @@ template <class F>
     };
     return {plane(0, 1), plane(0, 2), plane(0, 3), plane(1, 2), plane(1, 3), plane(2, 3)};
 }
-/// tesserae::velocity_at().
+/// Returns tesserae::velocity_at() for each lane.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> velocity_at(const LaneBivector<F>& w,
                                                       const LaneVec4<F>& r) {
@@ -291,7 +292,7 @@ template <class F>
                                          std::array<Eight, 6>& to) {
     for (std::size_t i = 0; i < 6; ++i) lane.store(x[i], to[i]);
 }
-/// The first three, and 0.
+/// Loads the first three components of a vector; the last one is 0.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> load(const Lane<F>& lane,
                                                const std::array<Eight, 3>& from) {

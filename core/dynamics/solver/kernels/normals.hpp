@@ -5,11 +5,12 @@
 #include "core/dynamics/solver/kernels/place.hpp"
 #include "core/dynamics/solver/kernels/row.hpp"
 
-// The normal impulses of a pair that is not round, on all of its points in turn. Each changes the
-// normal velocities of the others by their point responses: so much shorter a way from one to the
-// next than by the motion of the pair.
+// The normal impulses at the points of a pair that is not round, in turn. Each impulse changes the
+// normal velocities of the other points by their point responses. That takes fewer operations
+// between two points than the motion of the pair would.
 namespace tesserae::lanes {
 
+/// The normal impulses of a batch's pairs while they are solved.
 /// @tparam kPoints   padded_points()
 template <std::size_t kPoints, class F>
 class PairNormals {
@@ -32,15 +33,15 @@ class PairNormals {
         see(&coloured.second[batch.row], pass, motion, All());
     }
 
-    /// Once through all points.
-    /// @tparam kFirst   else what a point does to those before it is of no use any more
+    /// Goes through all points once.
+    /// @tparam kFirst   whether another pass over all points follows
     /// @return the largest velocity that was left to solve, if `measured`
     template <bool kBackward, bool kFirst>
     [[gnu::always_inline]] F solve(bool measured) {
         return solve<kBackward, kFirst>(measured, All());
     }
 
-    /// What the impulses have changed by, seen from the centre.
+    /// Adds the changes of the impulses, as an impulse and a moment at the pair's centre.
     [[gnu::always_inline]] void add_impulse(std::array<F, 4>& impulse) const {
         add_impulse(impulse, All());
     }

@@ -10,13 +10,15 @@
 // The bodies of a pair that is not round, lane by lane, and the frame of its contacts.
 namespace tesserae::lanes {
 
-/// Place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by row.
+/// Returns the place of entry (i, j) in the upper triangle of a symmetric matrix of kSize, row by
+/// row.
 template <std::size_t kSize>
 constexpr std::size_t in_triangle(std::size_t i, std::size_t j) {
     return i <= j ? i * kSize - i * (i + 1) / 2 + j : in_triangle<kSize>(j, i);
 }
 
-/// What an angular impulse does to each lane's body.
+/// The inverse inertias of one body of each lane.
+/// @tparam kUneven   false: they are one number for each body
 template <class F, bool kUneven>
 class Inverse {
   public:
@@ -25,7 +27,7 @@ class Inverse {
     [[gnu::always_inline]] LaneBivector<F> of(const LaneBivector<F>& moment) const {
         return scalar_ * moment;
     }
-    /// Of a unit moment.
+    /// Returns the change of angular velocity by a unit moment in a plane.
     [[gnu::always_inline]] LaneBivector<F> column(std::size_t plane) const {
         LaneBivector<F> w{};
         w[plane] = scalar_;
@@ -60,7 +62,7 @@ class Inverse<F, true> {
     const LaneInertia& inertia_;
 };
 
-/// The bodies' inverse inertias side by side: sweeps then need not look for them.
+/// Copies the bodies' inverse inertias side by side, so that sweeps need not look for them.
 template <class F>
 [[gnu::always_inline]] inline void gather_inertias(const Lane<F>& lane,
                                                    const std::vector<InverseInertia>& inertias,
@@ -77,21 +79,22 @@ template <class F>
     }
 }
 
-/// In world axes, of b against a at a pair's centre: a motion, or an impulse and its moment.
+/// The motion of b relative to a at a pair's centre, or an impulse and its moment there, in world
+/// axes.
 template <class F>
 struct Screw {
     LaneVec4<F> straight;
     LaneBivector<F> turning;
 };
 
-/// The same in a pair's frame, where x, y and z are across the normal n.
+/// A Screw in its pair's frame, where x, y and z are across the normal n.
 template <class F>
 struct FrameScrew {
-    std::array<F, 4> along;   ///< n; turning in xn yn zn: what normal impulses do and see
-    std::array<F, 6> across;  ///< x y z; turning in xy xz yz: what friction does and sees
+    std::array<F, 4> along;   ///< n; turning in xn yn zn: normal impulses act on these
+    std::array<F, 6> across;  ///< x y z; turning in xy xz yz: friction acts on these
 };
 
-/// PairFrame's reflection.
+/// The reflection by which PairFrame leads from world axes to a pair's frame and back.
 template <class F>
 struct Frame {
     LaneVec4<F> h;
@@ -104,7 +107,7 @@ struct Frame {
     [[gnu::always_inline]] LaneVec4<F> reflected(const LaneVec4<F>& v) const {
         return sum(v, -dot(h, v), h);
     }
-    /// B -> B - h ^ (B at h), into the frame and back.
+    /// Returns B - h ^ (velocity of B at h): a bivector in the frame, or back in the world.
     [[gnu::always_inline]] LaneBivector<F> reflected(const LaneBivector<F>& b) const {
         return b - wedge(h, velocity_at(b, h));
     }
@@ -125,7 +128,7 @@ struct Frame {
 template <class F, bool kUneven>
 class LanePair {
   public:
-    /// @param index   of the batch, whose frame is made
+    /// @param index   of the batch, whose frame has been made
     [[gnu::always_inline]] LanePair(const Lane<F>& lane, ColouredIslands& coloured,
                                     std::uint32_t index)
         : lane_(lane),
@@ -136,13 +139,13 @@ class LanePair {
           a_(bodies_a_.template load<true>()),
           b_(bodies_b_.template load<true>()) {}
 
-    /// How b has come to move against a.
+    /// Returns the change of the motion of b relative to a since the start.
     [[gnu::always_inline]] Screw<F> motion() const {
         return {(b_.velocity - a_.velocity) + (velocity_at(b_.angular_velocity, centre_b()) -
                                                velocity_at(a_.angular_velocity, centre_a())),
                 b_.angular_velocity - a_.angular_velocity};
     }
-    /// Gives the bodies an impulse, on b.
+    /// Applies an impulse to b and its opposite to a.
     [[gnu::always_inline]] void apply(const Screw<F>& impulse) {
         const LaneVec4<F>& p = impulse.straight;
         a_.velocity = sum(a_.velocity, -a_.inverse_mass, p);
@@ -191,7 +194,7 @@ template <std::size_t kSize, std::size_t kRow, class F, std::size_t kEntries,
      ...);
     return to + other;
 }
-/// to += S x, of the symmetric matrix S.
+/// Adds S x to `to`, with the symmetric matrix S.
 template <std::size_t kSize, class F, std::size_t kEntries, std::size_t... kRow>
 [[gnu::always_inline]] inline void add_product(const std::array<F, kEntries>& symmetric,
                                                const std::array<F, kSize>& x,
@@ -207,7 +210,7 @@ template <std::size_t kSize, class F, std::size_t kEntries>
     add_product(symmetric, x, to, std::make_index_sequence<kSize>());
 }
 
-/// A block of three, xx xy xz yy yz zz, times v.
+/// Returns the symmetric block xx xy xz yy yz zz times v.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> times(const std::array<F, 6>& symmetric,
                                                 const LaneVec4<F>& v) {
@@ -217,26 +220,28 @@ template <class F>
             fused(s[2], v[0], fused(s[4], v[1], s[5] * v[2])), F{}};
 }
 
-/// Where a tangent block yields this many times as much in some direction as in another, all
-/// directions are taken to yield more, by one in so many of the most: it is inverted in float and
-/// the inverse is rounded to one part in 500, neither of which may make it much larger than it is.
-/// So it is of a thin body that is touched far beside it, and where some direction does not yield
-/// at all, as that towards a centre whose place is fixed.
+/// The largest condition number of a tangent block, about. Above it the norm over kMostCondition is
+/// added to the diagonal. The block is inverted in float, and the inverse is rounded to one part in
+/// 500; neither may make the inverse much larger than it is. Such blocks come from thin bodies that
+/// are touched far from their centre, and from directions that do not yield at all, as that towards
+/// a centre that is fixed.
 constexpr float kMostCondition = 100;
 
-/// Of a symmetric block xx xy xz yy yz zz: its inverse times its determinant, and its norm.
+/// Returns the inverse of a symmetric block xx xy xz yy yz zz times its determinant.
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 6> adjugate(const std::array<F, 6>& K) {
     return {K[3] * K[5] - K[4] * K[4], K[2] * K[4] - K[1] * K[5], K[1] * K[4] - K[2] * K[3],
             K[0] * K[5] - K[2] * K[2], K[1] * K[2] - K[0] * K[4], K[0] * K[3] - K[1] * K[1]};
 }
+/// Returns the Frobenius norm of a symmetric block xx xy xz yy yz zz.
 template <class F>
 [[gnu::always_inline]] inline F norm_of(const std::array<F, 6>& K) {
     return square_root((K[0] * K[0] + K[3] * K[3] + K[5] * K[5]) +
                        (F{} + 2.0f) * (K[1] * K[1] + K[2] * K[2] + K[4] * K[4]));
 }
 
-/// The inverses of the tangent block K and of its norm.
+/// Computes the inverse of the tangent block K and of its norm; both are 0 where only rounding
+/// yields.
 template <class F>
 [[gnu::always_inline]] inline void invert(std::array<F, 6> K, F rounding, std::array<F, 6>& inverse,
                                           F& slide) {

@@ -4,10 +4,10 @@
 
 #include "core/dynamics/solver/kernels/pair.hpp"
 
-// Motions and impulses at the points of a pair that is not round, in its frame.
+// Motions and impulses at the points of a pair that is not round, in the pair's frame.
 namespace tesserae::lanes {
 
-/// From a pair's centre, across the normal.
+/// The place of a point across the normal, from its pair's centre.
 template <class F>
 using Place = std::array<F, 3>;
 
@@ -16,12 +16,12 @@ template <class F>
     const auto& in = lane.template in_row<GeneralRow>();
     return {in.load(row.at[0]), in.load(row.at[1]), in.load(row.at[2])};
 }
-/// The velocity along the normal at a place.
+/// Returns the velocity along the normal at a place.
 template <class F>
 [[gnu::always_inline]] inline F along_at(const Place<F>& at, const std::array<F, 4>& motion) {
     return fused(at[0], motion[1], motion[0]) + fused(at[1], motion[2], at[2] * motion[3]);
 }
-/// That across it.
+/// Returns the velocity across the normal at a place.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> across_at(const Place<F>& at,
                                                     const std::array<F, 6>& motion) {
@@ -30,7 +30,7 @@ template <class F>
             fused(x, motion[3], fused(-z, motion[5], motion[1])),
             fused(x, motion[4], fused(y, motion[5], motion[2])), F{}};
 }
-/// An impulse across the normal at a place, seen from the centre.
+/// Returns an impulse across the normal at a place as an impulse and a moment at the centre.
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 6> seen_from_centre(const Place<F>& at,
                                                                 const LaneVec4<F>& q) {
@@ -83,7 +83,7 @@ template <class F, std::size_t kSize>
     return of;
 }
 
-/// Calls use(lane, AcrossResponse<...>&) with that of a batch.
+/// Calls use(lane, AcrossResponse<...>&) with the response of a batch.
 template <class F, class Use>
 [[gnu::always_inline]] inline void with_response(const Lane<F>& lane, ColouredIslands& coloured,
                                                  std::uint32_t index, const Use& use) {
@@ -102,7 +102,7 @@ template <class F>
     return x;
 }
 
-/// to += k x
+/// Adds k x to `to`.
 template <class F, class Entry, std::size_t kSize>
 [[gnu::always_inline]] inline void add_scaled(const Lane<F>& lane,
                                               const std::array<Entry, kSize>& x, F k,

@@ -23,19 +23,20 @@ inline void put(const Bivector& b, std::size_t lane, std::array<Eight, 6>& to) {
     to[4].lane[lane] = static_cast<float>(b.yw), to[5].lane[lane] = static_cast<float>(b.zw);
 }
 
-/// Of a body that contacts do not move the offset is left out: it may be too large for a float.
+/// Writes the offset of a point from a body's centre, or 0 for a body that contacts do not move:
+/// its offset may be too large for a float.
 inline void put_offset(const Simulation& simulation, BodyId body, const Vec4& offset,
                        std::array<float, 4>& to) {
     put(simulation.type_of(body).movable ? offset : Vec4(Vec4::Zero()), to);
 }
 
-/// Whether each lane has as many points as rows: pairs of more come first.
+/// Returns whether each lane has as many points as the batch has rows. Pairs with more points come
+/// first.
 inline bool is_full(const Batch& batch) { return batch.points[kLanes - 1] == batch.rows; }
 
-/// Colours are made of pairs from anywhere: what they are made from is fetched ahead, or most of
-/// the time goes by in waiting for it. Of the batch after the next one that is what its contacts
-/// are, of the next one, how its bodies move. Inlined: a call of what does nothing else would be
-/// left out.
+/// Fetches ahead the contacts of the batch after the next one and the bodies' motions of the next
+/// one. A colour's pairs come from anywhere in memory, and most of the time would be spent waiting
+/// for them. It must be inlined: a call to a function that does nothing else is optimized away.
 [[gnu::always_inline]] inline void prefetch(const ColouredStage& stage,
                                             const std::vector<Batch>& batches,
                                             std::uint32_t index) {
@@ -61,6 +62,8 @@ inline bool is_full(const Batch& batch) { return batch.points[kLanes - 1] == bat
     }
 }
 
+/// Writes the contact `index` of round bodies into a lane. Velocities and impulses are in float,
+/// targets are relative to the start and computed in double.
 inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                       EightPoints& points) {
     const Simulation& simulation = stage.simulation;
@@ -84,7 +87,7 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
         points.along[lane]);
 }
 
-/// Whether slip_by_turning() is of anything.
+/// Returns whether slip_by_turning() can be other than 0.
 inline bool slips_by_turning(const ColouredStage& stage) {
     return stage.cause == Cause::kLoad && stage.simulation.needs.turning;
 }
@@ -100,7 +103,7 @@ inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::si
     put({of_a.yw, of_a.zw, of_b.yw, of_b.zw}, to.last[lane]);
     put(velocity_before_gravity(stage.simulation, step, a, b), to.against[lane]);
 }
-/// slip_by_turning()
+/// Returns slip_by_turning() of each lane.
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> slip_by_turning(const ColouredStage& stage,
                                                           const Lane<F>& lane, const LaneVec4<F>& n,
@@ -116,7 +119,8 @@ template <class F>
     return slip - dot(n, slip) * n;
 }
 
-/// The largest friction coefficient in float: its square, 1e36, is one too, of at most 3e38.
+/// The largest friction coefficient in float: its square, 1e36, is below float's largest number,
+/// 3e38.
 constexpr double kLargestFloatFriction = 1e18;
 
 inline float float_friction(const ColouredStage& stage, const Contact& c) {
@@ -135,25 +139,25 @@ inline float float_rolling_arm(const ColouredStage& stage, const Contact& c) {
     return static_cast<float>(
         std::min(rolling_arm_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
-/// How body b turns against a at the start.
+/// Writes the angular velocity of b relative to a at the start into a lane.
 inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                         std::array<Eight, 6>& turning) {
     const Contact& c = stage.step.contacts[index];
     put(stage.step.angular_velocity[c.b] - stage.step.angular_velocity[c.a], lane, turning);
 }
-/// The angular impulse to start from.
+/// Writes the angular impulse that a contact starts from into a lane.
 inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
                                 std::array<Eight, 6>& impulse) {
     if (stage.cause == Cause::kImpact) return;
     put((1 / stage.mass_unit) * stage.step.angular_impulses[index], lane, impulse);
 }
 
-/// Of a pair, world.
+/// A point of a pair, in world axes.
 struct PairPoint {
     Vec4 place;
     double separation;
 };
-/// In the midst of a pair's points, as high along the normal as the deepest.
+/// Returns the centre of a pair: the mean of its points, as high along the normal as the deepest.
 inline Vec4 centre_of(std::span<const PairPoint> points, const Vec4& normal) {
     Vec4 sum = points[0].place;
     const PairPoint* deepest = &points[0];
@@ -165,7 +169,8 @@ inline Vec4 centre_of(std::span<const PairPoint> points, const Vec4& normal) {
     return mean + normal.dot(deepest->place - mean) * normal;
 }
 
-/// As put_point(), of a pair with so many contacts from `first` on.
+/// Writes a pair with `count` contacts from `first` on into a lane, as put_point() does for one
+/// contact.
 inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_t count,
                      std::size_t lane, EightPairs& pairs) {
     const Simulation& simulation = stage.simulation;
@@ -210,7 +215,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     }
 }
 
-/// Calls work(Lane<F>, batch) for all lanes of the batches.
+/// Calls work(Lane<F>, batch) for all lanes of the batches, in the order of the sweep.
 template <class Work>
 void for_lanes(BatchRange batches, LaneCount lanes, bool backward, const Work& work) {
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {

@@ -14,7 +14,7 @@ template <class F>
     b.velocity = sum(b.velocity, b.inverse_mass, impulse);
 }
 
-/// A tangent impulse also turns the bodies, whose offsets are arm_a n and -arm_b n.
+/// Applies the turning by a tangent impulse to both bodies, whose offsets are arm_a n and -arm_b n.
 template <class F>
 [[gnu::always_inline]] inline void turn(const LaneVec4<F>& n, const LaneVec4<F>& tangent, F arm_a,
                                         F arm_b, Motion<F>& a, Motion<F>& b) {
@@ -23,7 +23,7 @@ template <class F>
     b.angular_velocity = b.angular_velocity - (b.inverse_inertia * arm_b) * moment;
 }
 
-/// An angular impulse, of which rolling and twisting may each have so much.
+/// Returns an angular impulse whose rolling and twisting parts are each clamped to a length.
 template <class F>
 [[gnu::always_inline]] inline LaneBivector<F> clamped_parts(const LaneVec4<F>& n,
                                                             const LaneBivector<F>& impulse,
@@ -32,8 +32,8 @@ template <class F>
     return clamped<F>(rolling, most) + clamped<F>(impulse - rolling, most);
 }
 
-/// solve_rolling_row(): the response is the same about every plane, so that both parts can be
-/// taken at once and each from the impulse that ends its turning, clamped.
+/// Does one step as solve_rolling_row() does. The response is the same in every plane, so that both
+/// parts are solved at once, each by the clamped impulse that ends its turning.
 template <class F>
 [[gnu::always_inline]] inline void solve_rolling(const Lane<F>& lane, const LaneVec4<F>& n,
                                                  F normal_impulse, RoundRolling& rolling,
@@ -50,8 +50,8 @@ template <class F>
     b.angular_velocity = b.angular_velocity + b.inverse_inertia * change;
 }
 
-/// What the bodies' changes are of the slip.
-/// @param v, along   of b against a, and along the normal
+/// Returns the change of the slip by the changes of the bodies.
+/// @param v, along   velocity of b relative to a, and its part along the normal
 template <class F>
 [[gnu::always_inline]] inline LaneVec4<F> slip_of(const Lane<F>& lane, const LaneVec4<F>& n,
                                                   const LaneVec4<F>& v, F along,
@@ -63,9 +63,9 @@ template <class F>
     return sum(v, -along, n) - velocity_at(w, n);
 }
 
-/// The normal first and then friction, as solve_row() does: the response is the same along every
-/// tangent, so that the impulse that ends the slip, clamped, is the one that friction gives.
-/// Neither changes what the other sees, so that without rolling this is its own adjoint.
+/// Solves the normal impulses of a batch, then friction, as solve_row() does. The response is the
+/// same along every tangent, so that friction is the clamped impulse that ends the slip. Neither
+/// changes the other's velocity, so that without rolling this is its own adjoint.
 template <bool kFriction, bool kRolling, class F>
 [[gnu::always_inline]] inline F solve_batch(ColouredIslands& coloured, const Lane<F>& lane,
                                             std::uint32_t batch, Sweep sweep) {

@@ -14,16 +14,19 @@ struct NormalLanes {
     Lane<F> in_row, in_list;
 };
 
-/// @param exists     1; 0 of points that a lane does not have
-/// @param response   change of the normal velocity by a unit impulse; up to `least` it is none
+/// Writes the normal mass of a row.
+/// @param exists     1, or 0 for points that a lane does not have
+/// @param response   change of the normal velocity by a unit impulse; up to `least` the mass is 0
 template <class F>
 [[gnu::always_inline]] inline void make_normal(const Lane<F>& lane, F exists, F response, F least,
                                                NormalRow& row) {
     const F inverse = (F{} + 1.0f) / response;
     lane.store(response > least ? (exists > F{} ? inverse : F{}) : F{}, row.mass);
 }
-/// @param fours   targets of the first and the second pass, whether it exists, normal impulse
-/// @param place   in `second` and `impulses`
+/// Writes the targets and the first normal impulse of a row.
+/// @param fours   targets of the first and the second pass, whether the point exists, normal
+///                impulse
+/// @param place   of the row in `second` and `impulses`
 /// @return the impulse to start from
 template <class F>
 [[gnu::always_inline]] inline F start_normal(const NormalLanes<F>& lanes, const LaneVec4<F>& fours,
@@ -36,15 +39,15 @@ template <class F>
     return fours[3];
 }
 
-/// The normal velocity that a pass aims at, less that of the start.
+/// Returns the normal velocity that a pass aims at, less that of the start.
 template <class F>
 [[gnu::always_inline]] inline F target_of(const NormalLanes<F>& lanes, const NormalRow& row,
                                           const Eight& second, Pass pass) {
     return pass == Pass::kSolve ? lanes.in_row.load(row.target) : lanes.in_list.load(second);
 }
-/// One step of a normal impulse.
-/// @param left   of its target, less the change of the normal velocity
-/// @return its change
+/// Does one step of a normal impulse.
+/// @param left   the target less the present normal velocity
+/// @return the change of the impulse
 template <class F>
 [[gnu::always_inline]] inline F solve_normal(const NormalLanes<F>& lanes, const NormalRow& row,
                                              F left, Eight& impulse) {
@@ -55,7 +58,7 @@ template <class F>
     return change;
 }
 
-/// The nearest of length at most `most`; zero stays zero.
+/// Returns the impulse nearest to a given one whose length is at most `most`; zero stays zero.
 template <class F, template <class> class Impulse>
 [[gnu::always_inline]] inline Impulse<F> clamped(const Impulse<F>& impulse, F most) {
     const F squared = dot(impulse, impulse);
@@ -63,12 +66,12 @@ template <class F, template <class> class Impulse>
     return scale * impulse;
 }
 
-/// A change over the mass that it moves: what was left to solve [m/s].
+/// Returns the velocity that was left to solve [m/s]: a change of impulse over its mass.
 template <class F>
 [[gnu::always_inline]] inline F velocity_left(F mass, F change) {
     return mass > F{} ? magnitude(change) / mass : F{};
 }
-/// Its square.
+/// Returns the square of the velocity that was left to solve, for an impulse across the normal.
 template <class F>
 [[gnu::always_inline]] inline F squared_velocity_left(F mass, const LaneVec4<F>& change) {
     const LaneVec4<F> left = (mass > F{} ? (F{} + 1.0f) / mass : F{}) * change;
