@@ -12,6 +12,8 @@
 #   bash bench/run.sh picture      error of pictures against time, 4 minutes
 #   bash bench/run.sh cycles       a still beside Blender's Cycles (installs it), 5 minutes; not one of all parts
 #   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
+#   bash bench/run.sh gate         the gate of the dynamics: what got better or worse since the committed
+#                                  table; fails if anything got worse, 15 minutes; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
 #   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
@@ -22,7 +24,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
 all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest wall scaling)
-on_demand=(cycles large scaling-million scaling-16-cores)
+on_demand=(gate cycles large scaling-million scaling-16-cores)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
     case " ${all[*]} ${on_demand[*]} " in *" $1 "*) parts=("$1") ;; *)
@@ -36,7 +38,9 @@ install_packages "${packages[@]}" libbenchmark-dev libbullet-dev libccd-dev libo
 folder=$root/build/bench
 results=$root/bench/results
 raw=$folder/raw
-build "$folder" benchmarks -DCMAKE_BUILD_TYPE=Release -DTESSERAE_BENCH=ON
+target=benchmarks
+[ "${parts[*]}" != gate ] || target=gate
+build "$folder" "$target" -DCMAKE_BUILD_TYPE=Release -DTESSERAE_BENCH=ON
 mkdir -p "$results" "$raw"
 
 load() { cut -d ' ' -f 1 /proc/loadavg; }
@@ -143,6 +147,18 @@ large() {
     rm -rf "$raw/large" "$raw/first.h5"
     head_of large "$1"
     cat "$raw/head.txt" "$raw/large.csv" >"$results/large_frame.csv"
+}
+
+# What the last commit measured, and now.
+gate() {
+    local status=0
+    "$folder/bench/gate" >"$raw/gate.csv"
+    head_of gate "$1"
+    git -C "$root" show HEAD:bench/results/gate.csv >"$raw/gate_before.csv" 2>/dev/null ||
+        cp "$raw/gate.csv" "$raw/gate_before.csv"
+    /usr/bin/python3 -B "$root/bench/gate/report.py" "$raw/gate_before.csv" "$raw/gate.csv" || status=$?
+    cat "$raw/head.txt" "$raw/gate.csv" >"$results/gate.csv"
+    return $status
 }
 
 bullet() {

@@ -13,6 +13,12 @@ btVector3 vector_of(const Vec4& v) {
             static_cast<btScalar>(v.z())};
 }
 
+btMatrix3x3 matrix_of(const Mat4& m) {
+    const auto number = [&](int i, int j) { return static_cast<btScalar>(m(i, j)); };
+    return {number(0, 0), number(0, 1), number(0, 2), number(1, 0), number(1, 1),
+            number(1, 2), number(2, 0), number(2, 1), number(2, 2)};
+}
+
 /// Bullet's defaults, but no split of the step and nobody falls asleep.
 class InBullet : public PeerEngine {
   public:
@@ -29,7 +35,8 @@ class InBullet : public PeerEngine {
             else
                 shapes_.push_back(std::make_unique<btBoxShape>(vector_of(0.5 * kind.sides)));
         for (std::size_t i = 0; i < scene.size(); ++i)
-            add_body(scene.kinds[scene.kind[i]].mass, *shapes_[scene.kind[i]], scene.position[i]);
+            add_body(scene.kinds[scene.kind[i]].mass, *shapes_[scene.kind[i]], scene.position[i],
+                     scene.rotor);
         moving_ = bodies_.size();
         for (const Wall& wall : scene.walls) add_wall(wall, scene.half_width);
     }
@@ -78,13 +85,15 @@ class InBullet : public PeerEngine {
         }
     }
 
-    void add_body(double mass, btCollisionShape& shape, const Vec4& position) {
+    void add_body(double mass, btCollisionShape& shape, const Vec4& position,
+                  const Rotor& rotor = {}) {
         btVector3 inertia(0, 0, 0);
         if (mass > 0) shape.calculateLocalInertia(static_cast<btScalar>(mass), inertia);
         btRigidBody::btRigidBodyConstructionInfo info(static_cast<btScalar>(mass), nullptr, &shape,
                                                       inertia);
         info.m_startWorldTransform.setIdentity();
         info.m_startWorldTransform.setOrigin(vector_of(position));
+        info.m_startWorldTransform.setBasis(matrix_of(to_matrix(rotor)));
         // Bullet multiplies the two coefficients.
         info.m_friction = static_cast<btScalar>(std::sqrt(kPeerFriction));
         bodies_.push_back(std::make_unique<btRigidBody>(info));

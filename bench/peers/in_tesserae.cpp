@@ -19,7 +19,8 @@ Bodies bodies_of(const PeerScene& scene) {
         bodies.types.push_back(type);
     }
     for (std::size_t i = 0; i < scene.size(); ++i)
-        add(bodies, static_cast<std::uint32_t>(scene.kind[i]), scene.position[i]);
+        add(bodies, static_cast<std::uint32_t>(scene.kind[i]), scene.position[i], Vec4::Zero(), {},
+            scene.rotor);
     for (const Wall& wall : scene.walls)
         add(bodies, plane_type(wall.side * Vec4::Unit(wall.axis), wall.offset, kPeerFriction, 0),
             Vec4::Zero());

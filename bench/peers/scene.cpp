@@ -116,6 +116,40 @@ PeerScene box_pyramid(int dimension, int count) {
     return scene;
 }
 
+PeerScene tumbled_boxes(int dimension, int count) {
+    constexpr double kSpacing = 1.1, kJitter = 0.045;
+    PeerScene scene = empty_scene("tumbled_boxes", dimension);
+    scene.settling_steps = 480;
+    scene.kinds.push_back(box_kind(dimension, {0.9, 0.5, 0.7, 0.6}));
+    // In three dimensions the second turn is about the first axis instead.
+    const double xy = 20 * pi / 180, other = 35 * pi / 180;
+    scene.rotor = dimension == 4 ? exp(Bivector{-0.5 * xy, 0, 0, 0, 0, -0.5 * other})
+                                 : exp(Bivector{-0.5 * xy, 0, 0, -0.5 * other});
+
+    const std::vector<int> axes =
+        dimension == 4 ? std::vector<int>{3, 2, 0} : std::vector<int>{2, 0};
+    const int across = static_cast<int>(std::ceil(std::pow(2.0 * count, 1.0 / dimension) - 1e-9));
+    scene.half_width = 0.5 * kSpacing * across + 0.1;
+    for (const int axis : axes)
+        for (const double side : {-1.0, 1.0})
+            scene.walls.push_back({axis, side, -scene.half_width});
+
+    std::mt19937_64 engine(1);
+    std::uniform_real_distribution<> jitter(-kJitter, kJitter);
+    for (int i = 0; i < count; ++i) {
+        Vec4 x = Vec4::Zero();
+        int place = i;
+        for (const int axis : axes) {
+            x[axis] = kSpacing * (place % across - 0.5 * (across - 1)) + jitter(engine);
+            place /= across;
+        }
+        x[1] = 0.7 + kSpacing * place + jitter(engine);
+        scene.position.push_back(x);
+        scene.kind.push_back(0);
+    }
+    return scene;
+}
+
 double deepest_sphere_overlap(const PeerScene& scene, const std::vector<Vec4>& position) {
     const auto radius = [&](std::size_t i) { return scene.kinds[scene.kind[i]].radius; };
     double largest = 0, deepest = 0;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/algebra/rotor.hpp"
 #include "core/algebra/vector.hpp"
 
 namespace tesserae::bench {
@@ -25,8 +26,9 @@ struct PeerKind {
     double mass = 1;    ///< [kg]
 };
 
-/// A scene that every engine can build: spheres or boxes, at rest, with their sides along the axes.
-/// In three dimensions w = 0 everywhere. No restitution.
+/// A scene that every engine can build: spheres or boxes, at rest, with their sides along the axes
+/// but for those of tumbled_boxes(), which ODE does not build. In three dimensions w = 0
+/// everywhere. No restitution.
 struct PeerScene {
     std::string name;
     int dimension = 4;        ///< 3 or 4
@@ -36,6 +38,7 @@ struct PeerScene {
     std::vector<PeerKind> kinds;
     std::vector<std::size_t> kind;  ///< of every body
     std::vector<Vec4> position;     ///< of every body [m]
+    Rotor rotor;                    ///< of every body
 
     std::size_t size() const { return position.size(); }
 };
@@ -54,6 +57,10 @@ PeerScene board_stacks(int dimension, int count);
 /// Cubes of 1 m, each on the middle between two that are 5 cm apart: n rows of n to 1, at most
 /// `count` in all.
 PeerScene box_pyramid(int dimension, int count);
+
+/// Turned boxes of unequal sides in a pit, as `tesserae generate boxes` puts them: they fall into a
+/// heap half as high as wide.
+PeerScene tumbled_boxes(int dimension, int count);
 
 /// Deepest overlap of two spheres or of a sphere and a wall, from positions alone [m], >= 0.
 double deepest_sphere_overlap(const PeerScene& scene, const std::vector<Vec4>& position);
