@@ -13,7 +13,7 @@
 #   bash bench/run.sh cycles       a still beside Blender's Cycles (installs it), 5 minutes; not one of all parts
 #   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
 #   bash bench/run.sh gate         the gate of the dynamics: what got better or worse since the committed
-#                                  table; fails if anything got worse, 15 minutes; not one of all parts
+#                                  table; fails if anything got worse, ten minutes; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
 #   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
