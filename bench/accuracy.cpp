@@ -84,7 +84,7 @@ void print(const Row& row) {
     const double median = quantile(row.seconds, 0.5);
     const double spread = (quantile(row.seconds, 0.75) - quantile(row.seconds, 0.25)) / median;
     for (const Error& error : row.errors)
-        fmt::print("{},{},{},{},{},{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
+        fmt::print("{},{},{},{},{},{},{},{:.3e},{:.4g},{:.0f},{}\n", row.experiment.name,
                    error.quantity, error.unit, name_of(k.integrator), k.substeps, k.iterations,
                    k.steps_per_second, error.value, scale * median, 100 * spread,
                    row.seconds.size());
