@@ -1,5 +1,5 @@
 // The gate of the dynamics: CSV on standard output, progress on the other one. See README.md.
-//   gate [--list] [--rows NAME...] [--quick] [--no-times] [--shake N]
+//   gate [--list] [--quick] [--scenes N] [--runs N] [--no-times] [--shake N] [--rows NAME...]
 
 #include "bench/gate/gate.hpp"
 
@@ -34,6 +34,8 @@ std::vector<Family> all_families() {
 
 struct Options {
     bool list = false, quick = false, times = true;
+    int scenes = std::numeric_limits<int>::max();  ///< of a family, at most
+    int runs = std::numeric_limits<int>::max();    ///< of a scene, at most
     std::uint64_t shake = 0;  ///< other numbers shake the same scenes otherwise
     std::vector<std::string> names;
 
@@ -57,12 +59,13 @@ class Runs {
         : families_(std::move(families)), values_(families_.size()), spent_(families_.size()) {
         for (std::size_t f = 0; f < families_.size(); ++f) {
             const Family& family = families_[f];
-            const int scenes = options.quick ? family.quick_scenes : family.scenes;
+            const int scenes =
+                std::min(options.quick ? family.quick_scenes : family.scenes, options.scenes);
+            const int runs = std::min(family.runs, options.runs);
             values_[f].resize(static_cast<std::size_t>(scenes));
             for (int scene = 0; scene < scenes; ++scene) {
-                values_[f][static_cast<std::size_t>(scene)].resize(
-                    static_cast<std::size_t>(family.runs));
-                for (int run = 0; run < family.runs; ++run) {
+                values_[f][static_cast<std::size_t>(scene)].resize(static_cast<std::size_t>(runs));
+                for (int run = 0; run < runs; ++run) {
                     const auto number = static_cast<std::uint64_t>(run);
                     todo_.push_back({f, {scene, 1000 * options.shake + number}, number});
                 }
@@ -173,6 +176,10 @@ Options options_of(const std::vector<std::string>& arguments) {
             options.quick = true;
         else if (argument == "--no-times")
             options.times = false;
+        else if (argument == "--scenes" && i + 1 < arguments.size())
+            options.scenes = std::max(1, std::stoi(arguments[++i]));
+        else if (argument == "--runs" && i + 1 < arguments.size())
+            options.runs = std::max(1, std::stoi(arguments[++i]));
         else if (argument == "--shake" && i + 1 < arguments.size())
             options.shake = std::stoull(arguments[++i]);
         else if (argument == "--rows" && i + 1 < arguments.size())
@@ -181,7 +188,8 @@ Options options_of(const std::vector<std::string>& arguments) {
                 i = arguments.size();
         else
             throw InputError(
-                "usage: gate [--list] [--quick] [--no-times] [--shake N] [--rows NAME...]");
+                "usage: gate [--list] [--quick] [--scenes N] [--runs N] [--no-times] [--shake N] "
+                "[--rows NAME...]");
     }
     return options;
 }

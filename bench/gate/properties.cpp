@@ -2,6 +2,11 @@
 
 #include "tests/scenes/properties/properties.hpp"
 
+#include <fmt/core.h>
+
+#include <functional>
+#include <string>
+
 #include "bench/gate/gate.hpp"
 #include "core/error.hpp"
 
@@ -15,24 +20,30 @@ std::vector<double> measure(const Run& run) {
         properties::draw_small_scene(10000 + static_cast<std::uint64_t>(run.scene));
     // Another power of two for every scene; of masses a power of four.
     const int power = run.scene % 13 - 6;
-    const std::function<std::string()> faults[] = {
-        [&] { return properties::fault_of_momentum(scene); },
-        [&] { return properties::fault_of_numbering(scene); },
-        [&] { return properties::fault_of_parting(scene); },
-        [&] { return properties::fault_of_turning(scene); },
-        [&] { return properties::fault_of_mirroring(scene); },
-        [&] { return properties::fault_of_slowing(scene); },
-        [&] {
-            return properties::fault_of_scaling(scene, {power, 0, 0});
-        },
-        [&] {
-            return properties::fault_of_scaling(scene, {0, 0, 2 * power});
-        }};
+    struct Property {
+        const char* name;
+        std::function<std::string()> fault;
+    };
+    const Property all[] = {{"momentum", [&] { return properties::fault_of_momentum(scene); }},
+                            {"numbering", [&] { return properties::fault_of_numbering(scene); }},
+                            {"interruption", [&] { return properties::fault_of_parting(scene); }},
+                            {"turning", [&] { return properties::fault_of_turning(scene); }},
+                            {"mirror", [&] { return properties::fault_of_mirroring(scene); }},
+                            {"units of time", [&] { return properties::fault_of_slowing(scene); }},
+                            {"units of length",
+                             [&] {
+                                 return properties::fault_of_scaling(scene, {power, 0, 0});
+                             }},
+                            {"units of mass", [&] {
+                                 return properties::fault_of_scaling(scene, {0, 0, 2 * power});
+                             }}};
     std::vector<double> values;
-    for (const auto& fault : faults) {
+    for (const auto& [name, find_fault] : all) {
         // What leaves the finite range ends what can be said of it.
         try {
-            values.push_back(fault().empty() ? 0 : 1);
+            const std::string fault = find_fault();
+            values.push_back(fault.empty() ? 0 : 1);
+            if (!fault.empty()) fmt::print(stderr, "seed {}, {}: {}\n", scene.seed, name, fault);
         } catch (const RunError&) {
             values.push_back(0);
         }

@@ -47,7 +47,7 @@ class Row:
     def floor(self):
         if self.is_time:
             return TIME_FLOOR[self.unit] * self.value
-        if self.unit.startswith(("of ", "runs of ")) and self.unit.split()[-1].isdigit():
+        if self.unit.startswith("runs") or (self.unit.startswith("of ") and self.unit[3:].isdigit()):
             return NEVER_FLOOR if self.is_never else COUNT_FLOOR
         return max(FLOORS[self.unit], RELATIVE_FLOOR * abs(self.value) if math.isfinite(self.value) else 0)
 
