@@ -55,7 +55,8 @@ struct Row {
     std::string family, quantity, unit;
     double value = 0;
     /// Half the width of the range in which 95 of 100 tables of the same program lie, if their
-    /// scenes are shaken otherwise; of times, the distance of the quartiles of the repeats.
+    /// scenes are shaken otherwise, or what one scene does to it that ends otherwise, if that is
+    /// more; of times, the distance of the quartiles of the repeats.
     double spread = 0;
     int samples = 0;
     Better better = Better::kLess;

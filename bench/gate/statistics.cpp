@@ -55,6 +55,18 @@ double spread_of_chance(Statistic statistic, const std::vector<std::vector<doubl
     return 2 * std::sqrt(std::max(0.0, squares / finite - mean * mean) * runs / (runs - 1));
 }
 
+/// How far a quantile moves if one scene does otherwise: half the distance of the scenes beside it.
+double spread_of_one_scene(double part, const std::vector<std::vector<double>>& by_scene) {
+    std::vector<double> scenes;
+    for (std::vector<double> runs : by_scene) scenes.push_back(quantile(runs, 0.5));
+    if (scenes.size() < 3) return 0;
+    std::sort(scenes.begin(), scenes.end());
+    const auto at = static_cast<std::size_t>(part * static_cast<double>(scenes.size()));
+    const std::size_t middle = std::clamp<std::size_t>(at, 1, scenes.size() - 2);
+    const double distance = scenes[middle + 1] - scenes[middle - 1];
+    return std::isfinite(distance) ? 0.5 * distance : 0;
+}
+
 const char* name_of(Statistic statistic) {
     switch (statistic) {
         case Statistic::kMedian:
@@ -95,6 +107,10 @@ std::vector<Row> rows_of(const Family& family,
                                                       : quantity.unit;
             row.value = summary(statistic, all, runs);
             row.spread = spread_of_chance(statistic, by_scene, runs);
+            if (statistic != Statistic::kCount)
+                row.spread = std::max(
+                    row.spread,
+                    spread_of_one_scene(statistic == Statistic::kMedian ? 0.5 : 0.9, by_scene));
             row.samples = static_cast<int>(all.size());
             row.better = quantity.better;
             rows.push_back(std::move(row));
