@@ -14,6 +14,8 @@
 #   bash bench/run.sh large        memory of a frame of 15360x8640, 2 minutes; not one of all parts
 #   bash bench/run.sh gate         the gate of the dynamics: what got better or worse since the committed
 #                                  table; fails if anything got worse, ten minutes; not one of all parts
+#   bash bench/run.sh ablation     the gate without each mechanism of the contact solver, an hour and a half;
+#                                  of the commit that had them all; not one of all parts
 #   bash bench/run.sh bullet       a box in w = 0 beside Bullet's; fails if they differ
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
 #   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
@@ -24,7 +26,7 @@
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
 all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest wall scaling)
-on_demand=(gate cycles large scaling-million scaling-16-cores)
+on_demand=(gate ablation cycles large scaling-million scaling-16-cores)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
     case " ${all[*]} ${on_demand[*]} " in *" $1 "*) parts=("$1") ;; *)
@@ -39,7 +41,7 @@ folder=$root/build/bench
 results=$root/bench/results
 raw=$folder/raw
 target=benchmarks
-[ "${parts[*]}" != gate ] || target=gate
+case "${parts[*]}" in gate | ablation) target=gate ;; esac
 build "$folder" "$target" -DCMAKE_BUILD_TYPE=Release -DTESSERAE_BENCH=ON
 mkdir -p "$results" "$raw"
 
@@ -159,6 +161,23 @@ gate() {
     /usr/bin/python3 -B "$root/bench/gate/report.py" "$raw/gate_before.csv" "$raw/gate.csv" || status=$?
     cat "$raw/head.txt" "$raw/gate.csv" >"$results/gate.csv"
     return $status
+}
+
+# The tree of the commit that switches.patch is of, with this room as it was when that came.
+ablation() {
+    local base=a4dd8c2 work=$root/build/ablation room
+    room=$(git -C "$root" log --format=%H --diff-filter=A -- bench/ablation/switches.patch | tail -1)
+    if [ ! -d "$work/tree" ]; then
+        mkdir -p "$work/tree"
+        git -C "$root" archive "$base" | tar x -C "$work/tree"
+        git -C "$root" archive "${room:-HEAD}" bench | tar x -C "$work/tree"
+        patch -d "$work/tree" -p1 -s <"$root/bench/ablation/switches.patch"
+        cmake -S "$work/tree" -B "$work/tree/build/bench" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERAE_BENCH=ON >"$work/configure.log"
+    fi
+    cmake --build "$work/tree/build/bench" --target gate >&2
+    head_of ablation "$1"
+    /usr/bin/python3 -B "$root/bench/ablation/ablate.py" "$work/tree/build/bench/bench/gate" "$work/raw" "$raw/head.txt" \
+        "$results/ablation.csv"
 }
 
 bullet() {
