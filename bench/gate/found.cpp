@@ -196,7 +196,7 @@ std::vector<double> pallet(const Run& run) {
 }  // namespace
 
 std::vector<Family> found_families() {
-    const Quantity spin{"spin after the first blow", "mrad/s"};
+    const Quantity spin{"spin after the first impact", "mrad/s"};
     const Quantity aside{"moved aside", "mm"}, overlap{"overlap at the end", "mm"};
     const Quantity fastest{"fastest in the last second", "mm/s"};
     const Quantity sinks{"sinks, or rises", "mm"};
