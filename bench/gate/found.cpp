@@ -24,6 +24,16 @@ double moved_aside(const Bodies& start, const Bodies& now) {
     return most;
 }
 
+/// Of bodies that bounce once without gravity [%].
+std::vector<double> energy_changed(Bodies bodies, const Run& run) {
+    shake(bodies, run.shake);
+    PhysicsSettings settings;
+    settings.gravity.setZero();
+    World world(bodies, settings);
+    watch(world, 0.5);
+    return {100 * std::abs(kinetic_energy(world.bodies()) / kinetic_energy(bodies) - 1)};
+}
+
 /// A spherinder, cubinder or duocylinder that bounces from a floor on its rim, without friction
 /// and gravity and with restitution 1: its energy should stay.
 std::vector<double> rim_bounce(const Run& run) {
@@ -34,12 +44,7 @@ std::vector<double> rim_bounce(const Run& run) {
     add(bodies, plane_type(Vec4::UnitY(), 0, 0, 1));
     add(bodies, type, 0.4 * Vec4::UnitY(), -1.5 * Vec4::UnitY(), drawn_plane(engine, 5),
         drawn_rotor(engine));
-    shake(bodies, run.shake);
-    PhysicsSettings settings;
-    settings.gravity.setZero();
-    World world(bodies, settings);
-    watch(world, 0.5);
-    return {100 * std::abs(kinetic_energy(world.bodies()) / kinetic_energy(bodies) - 1)};
+    return energy_changed(bodies, run);
 }
 
 /// A duocylinder that lost 7 % of its energy so.
@@ -55,12 +60,7 @@ std::vector<double> one_rim_bounce(const Run& run) {
     add(bodies, type, 0.4 * Vec4::UnitY(), -1.5 * Vec4::UnitY(),
         {2.06, 1.43, 2.09, 4.16, 0.24, -4.86},
         exp(-0.5 * pi / 180 * Bivector{-140.5, 34.2, 138.3, 76.9, 171.4, 166.0}));
-    shake(bodies, run.shake);
-    PhysicsSettings settings;
-    settings.gravity.setZero();
-    World world(bodies, settings);
-    watch(world, 0.5);
-    return {100 * std::abs(kinetic_energy(world.bodies()) / kinetic_energy(bodies) - 1)};
+    return energy_changed(bodies, run);
 }
 
 /// A press comes down at 0.5 m/s on two boxes in a pit, until there is no room for both. Nothing

@@ -126,6 +126,11 @@ void PlainRows::restore_motions() {
     }
 }
 
+void PlainRows::restore_turning() {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+}
+
 void PlainRows::make_rows() {
     const bool made = step_.has_rows[island_];
     const Parting parting = parting_of(step_, island_);
@@ -303,8 +308,7 @@ void PlainRows::end_correction() {
                                   turning - motions_[i].angular_velocity);
     }
     if (!turns) return;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+    restore_turning();
     step_.corrected[island_] = Correction::kStraight;
 }
 
@@ -321,9 +325,7 @@ void PlainRows::take_correction_back() {
                 simulation_, step_, row.a, row.b,
                 step_.angular_impulses[contact] - angular_impulse_of(row, rolling_row_of(row)));
     });
-    if (!straight) return;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+    if (straight) restore_turning();
 }
 
 }  // namespace tesserae

@@ -50,6 +50,7 @@ class PlainRows {
     void list_bodies();
     void keep_motions();
     void restore_motions();
+    void restore_turning();
     void swap_motions();
     void make_rows();
     void apply_impulse(const ContactRow& row, const Vec4& impulse);
