@@ -76,10 +76,9 @@ constexpr int kCorrectionSweeps = 2;
 constexpr std::size_t kCorrectionWork = 20000, kMostCorrectionSweeps = 32;
 
 /// The most energy that a body may give back after a position correction turned it, as a multiple
-/// of what it was given; amounts below kGivenBackOfTurning of its rotational energy do not count. A
-/// body that would give back more is not turned. Usual 4 and 1e-4. Greater kGivenBack: thin bodies
-/// are thrown. Smaller kGivenBackOfTurning: bodies that spin fast sink in.
-constexpr double kGivenBack = 4, kGivenBackOfTurning = 1e-4;
+/// of what it was given. A body that would give back more is not turned. Usual 4. More: thin bodies
+/// are thrown.
+constexpr double kGivenBack = 4;
 
 /// The greatest speed at which overlapping bodies are moved apart, in least half-sizes per second;
 /// the speed that gravity adds in a sub-step is added to it. Usual 4. More: bodies that start deep
@@ -156,13 +155,6 @@ constexpr double kHardlyAnything = 0.1;
 /// that land lose loads that they need, and towers that start with gaps fall.
 constexpr double kWarmStartWeight = 1000;
 
-/// The impulse of what supports an island, in its warm start, from which something that hit the
-/// island is being stopped, as a multiple of what gravity gives the island in a sub-step. Such a
-/// warm start is cut as kWarmStartWeight says if it leaves more energy than none would. Usual 4.
-/// More: heavy bodies that hit light ones come back. Less: bodies that are jammed between walls
-/// lose the loads that keep them there.
-constexpr double kWarmStartStop = 4;
-
 /// The slope of the energy after a step along a conjugate direction, as a multiple of the slope
 /// before it, up to which the next direction carries the last one on. Usual 4. More: steps explode
 /// where contacts have opened or slipped, as the directions are no longer conjugate. Less: useful
@@ -218,11 +210,6 @@ constexpr double kUnequalMasses = 2.5;
 /// Such an island keeps its momentum to 1e-15 of it per step in double, and to 1e-7 in float.
 /// Fewer: more islands lose momentum to float. More: large free heaps cost more.
 constexpr std::uint32_t kFreeColouredFrom = 1024;
-
-/// The slenderness of a body, see FloatRange, from which coloured islands store responses without
-/// rounding them to one part in 500. Usual 64, that of a rod of 1 by 0.09. More: thin rods that lie
-/// across each other fly apart. Less: boards take a tenth more memory.
-constexpr double kSlender = 64;
 
 /// The speed of a body's fastest point up to which it is still, in least half-sizes per second.
 /// Usual 0.05, ten times the slop. More: slow motion freezes. Less: the last trembling of a pile

@@ -95,7 +95,6 @@ void World::find_pairs_anew(Schedule& schedule) {
 
 void World::find_contacts(Schedule& schedule) {
     const Observed stage(*this, Stage::kFindContacts, step_.pairs.size());
-    step_.drift = drift_of(simulation_, step_);
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     do find_manifolds(schedule);
     while (wake_touched(schedule));

@@ -86,7 +86,6 @@ FloatRange float_range(std::span<const TypeProperties> types) {
     FloatRange range;
     int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
     for (const TypeProperties& type : types) {
-        range.slender |= slenderness(type) > kSlender;
         if (!type.movable) continue;
         range.fits &= type.radius > 1e-9 && type.radius < 1e9 && slenderness(type) <= 1e5;
         const int exponent = std::ilogb(type.mass);

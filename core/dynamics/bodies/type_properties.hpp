@@ -47,7 +47,6 @@ struct FloatRange {
     /// size are solved in double. A body's slenderness is its largest inverse inertia over its
     /// least, of those that contacts act by; 1 if contacts do not turn it.
     bool fits = true;
-    bool slender = false;  ///< some body is slender, see kSlender
 };
 /// Returns the float range of all types.
 FloatRange float_range(std::span<const TypeProperties> types);

@@ -70,9 +70,7 @@ bool turns_correction(const Simulation& simulation, const StepData& step, BodyId
         return dot(omega, angular_momentum(type, rotor, omega));
     };
     const Rotor &now = step.rotor[id], then = exp(-0.25 * step.h * turning) * now;
-    const double given_back = energy(then, corrected);
-    return given_back > kGivenBack * energy(now, corrected) &&
-           given_back > kGivenBackOfTurning * energy(now, turning);
+    return energy(then, corrected) > kGivenBack * energy(now, corrected);
 }
 
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {

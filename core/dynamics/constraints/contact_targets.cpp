@@ -171,21 +171,6 @@ double energy_of_fall(const Simulation& simulation, const StepData& step, std::s
     return 0.5 * step.islands.falling_mass[island] * kick.squaredNorm();
 }
 
-bool is_stopped(const Simulation& simulation, const StepData& step, std::size_t island) {
-    Vec4 all = Vec4::Zero();
-    for (const std::uint32_t n : step.islands.runs_in(island)) {
-        const ContactList::Run run = step.contacts.nth_run(n);
-        const bool a = simulation.type_of(run.a).movable, b = simulation.type_of(run.b).movable;
-        if (a && b) continue;
-        const Vec4 normal = step.contacts.normal(run.begin);
-        Vec4 of_run = Vec4::Zero();
-        for (std::size_t i = run.begin; i < run.end; ++i)
-            of_run += step.impulses[i].normal * normal + step.impulses[i].tangent();
-        all += a ? Vec4(-of_run) : of_run;
-    }
-    return all.norm() > kWarmStartStop * step.islands.falling_mass[island] * step.kick;
-}
-
 ImpactFilter::ImpactFilter(const Simulation& simulation, const StepData& step, const Contact& c)
     : centre_(step.position[c.a]),
       slowest_(slowest_impact(step, simulation.type_of(c.a), simulation.type_of(c.b))) {

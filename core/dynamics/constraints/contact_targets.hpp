@@ -121,10 +121,6 @@ bool is_corrected(const Simulation& simulation, const StepData& step, std::size_
 /// Returns the energy that gravity gives an island's bodies in a sub-step from rest [J].
 double energy_of_fall(const Simulation& simulation, const StepData& step, std::size_t island);
 
-/// Returns whether something that has hit an island is being stopped: in the warm start, bodies
-/// that contacts do not move give the island more than kWarmStartStop times what gravity gives it.
-bool is_stopped(const Simulation& simulation, const StepData& step, std::size_t island);
-
 /// The strength of an island's impacts.
 struct Impact {
     double fastest = 0;   ///< fastest approach [m/s]; 0: no impact

@@ -10,20 +10,11 @@
 
 namespace tesserae {
 
-Vec4 drift_of(const Simulation& simulation, const StepData& step) {
-    Vec4 sum = Vec4::Zero();
-    for (BodyId id = 0; id < step.velocity.size(); ++id) {
-        if (!simulation.type_of(id).movable) return Vec4::Zero();
-        sum += step.velocity[id];
-    }
-    return sum / std::max<double>(1, static_cast<double>(step.velocity.size()));
-}
-
 Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
     const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
     const Vec4 &v_a = step.velocity[a], &v_b = step.velocity[b];
     const double relative = (v_b - v_a).norm();
-    const double fastest = std::max((v_a - step.drift).norm(), (v_b - step.drift).norm());
+    const double fastest = std::max(v_a.norm(), v_b.norm());
     double speed = relative;
     if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
     if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);

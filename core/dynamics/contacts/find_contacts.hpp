@@ -4,18 +4,13 @@
 
 namespace tesserae {
 
-/// Returns the velocity that all bodies have in common [m/s], or 0 if contacts do not move some of
-/// them.
-Vec4 drift_of(const Simulation& simulation, const StepData& step);
-
 /// The separations [m] up to which a pair's points are found: see find_contacts().
 struct Margins {
     /// For points that can close within one sub-step at the present relative velocity, or are
     /// within the slop of touching.
     double as_they_move;
-    /// Also for points that can close if others stop one of the bodies, at the other one's speed
-    /// beyond step.drift: bodies that fall one above the other would sink into each other as the
-    /// lower one lands.
+    /// Also for points that can close if others stop one of the bodies, at the other one's speed:
+    /// bodies that fall one above the other would sink into each other as the lower one lands.
     double if_one_stops;
 };
 Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);

@@ -44,7 +44,6 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.friction = simulation.needs.friction;
     coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
-    coloured.slender = simulation.floats.slender;
     coloured.first_body.assign(1, 1);
     coloured.first_colour.assign(1, 0);
     coloured.mass_unit.clear();
@@ -116,7 +115,6 @@ void Colouring::end(StepData& step) {
     if (!coloured.friction) return;
     resize_anew(coloured.round_friction, coloured.round.size());
     resize_anew(coloured.pair_friction, coloured.general.size());
-    if (coloured.slender) resize_anew(coloured.slender_response, coloured.general.size());
     resize_anew(coloured.general_friction, coloured.general_rows);
     if (!coloured.rolling) return;
     resize_anew(coloured.round_rolling, coloured.round.size());

@@ -22,7 +22,7 @@ class ConjugateDirections {
         double weight = 0;
         for (const BodySums& piece : sums_of([](auto... of) { return weigh_warm_start(of...); }))
             warm_start_ += piece[0], weight += piece[1];
-        if (warm_start_ > LoadWork::least_of_stop(weight)) leave_part_of_warm_start(weight);
+        if (warm_start_ > kWarmStartWeight * weight) leave_part_of_warm_start();
         rounding_ = kFloatStep * kFloatStep * warm_start_;
         for_all_rows(
             island, threads, [&](BatchRange some) { take_warm_start_round(stage, some); },
@@ -110,8 +110,7 @@ class ConjugateDirections {
 
     /// Cuts a warm start that is far more than weights: it may have ended an impact and would
     /// replay it. The part that takes the most energy stays.
-    /// @param weight   see weigh_warm_start()
-    void leave_part_of_warm_start(double weight) {
+    void leave_part_of_warm_start() {
         const ColouredStage& stage = island_.stage();
         for_all_rows(
             island_, threads_,
@@ -123,10 +122,7 @@ class ConjugateDirections {
                 begin_warm_start_general(stage, some);
                 weigh_general_step(stage, some);
             });
-        const LoadWork load = {-work()[0], 2 * warm_start_};
-        const bool stopped = is_stopped(stage.simulation, stage.step, island_.number());
-        if (!load.is_too_much(weight, stopped)) return;
-        const double part = load.best_part();
+        const double part = LoadWork{-work()[0], 2 * warm_start_}.best_part();
         leave_part_of_load(island_, threads_, part);
         warm_start_ *= part * part;
     }

@@ -125,10 +125,7 @@ template <IslandRows Rows>
 void limit_warm_start(Rows& rows) {
     const Simulation& simulation = rows.simulation();
     const double weight = energy_of_fall(simulation, rows.step(), rows.island());
-    if (!(0.5 * rows.energy() > LoadWork::least_of_stop(weight))) return;
-    const LoadWork load = rows.load();
-    if (load.is_too_much(weight, is_stopped(simulation, rows.step(), rows.island())))
-        rows.leave_part(load.best_part());
+    if (0.5 * rows.energy() > kWarmStartWeight * weight) rows.leave_part(rows.load().best_part());
 }
 
 /// Replaces a load that gains energy by the part of its warm start that takes the most energy.

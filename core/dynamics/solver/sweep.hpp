@@ -113,15 +113,6 @@ struct LoadWork {
 
     /// Returns whether the load gains energy; sweeps that converge only take it.
     bool is_gain() const { return work + 0.5 * energy > 0; }
-    /// Returns whether this is too much for a warm start: see kWarmStartWeight.
-    /// @param energy_of_fall, stopped   energy_of_fall(), is_stopped()
-    bool is_too_much(double energy_of_fall, bool stopped) const {
-        return 0.5 * energy > kWarmStartWeight * energy_of_fall || (stopped && is_gain());
-    }
-    /// Returns the least energy [J] of a warm start for which is_stopped() can be true.
-    static double least_of_stop(double energy_of_fall) {
-        return kWarmStartStop * kWarmStartStop * energy_of_fall;
-    }
     /// Returns the part of the impulses that takes the most energy; it gains none.
     double best_part() const { return std::clamp(-work / energy, 0.0, 1.0); }
 };

@@ -166,7 +166,6 @@ struct StepData {
 
     std::vector<Bounds> bounds;   ///< of every body
     std::vector<BodyPair> pairs;  ///< ascending
-    Vec4 drift = Vec4::Zero();    ///< see drift_of()
     ContactList contacts;         ///< ascending (a, b, feature)
     Islands islands;
     bool rows_in_use = false;  ///< rows are in use: from build_islands() to the end of the sub-step

@@ -131,16 +131,16 @@ struct PairInertia {
     LaneInertia a, b;
 };
 /// The response of the motion across the normal, on which friction acts: the velocity along x, y, z
-/// and the turning in xy, xz, yz.
-template <class Lanes>
+/// and the turning in xy, xz, yz. It is not rounded as masses are: the rounding of a slender body's
+/// response to a moment about its length would exceed the response to any other.
 struct AcrossResponse {
-    std::array<Lanes, 21> across;               ///< to impulses across the normal: symmetric
-    std::array<std::array<Lanes, 6>, 4> along;  ///< to impulses along the normal
+    std::array<Eight, 21> across;               ///< to impulses across the normal: symmetric
+    std::array<std::array<Eight, 6>, 4> along;  ///< to impulses along the normal
 };
 struct PairFriction {
     Eight friction;
     std::array<Eight, 6> motion;  ///< of b relative to a at the start, across the normal
-    AcrossResponse<RoughEight> response;
+    AcrossResponse response;
 };
 /// A contact of any two bodies. Its height over the frame's centre is left out: the points of one
 /// pair that bear a load lie in one plane, apart from their overlaps.
@@ -178,7 +178,6 @@ struct ColouredIslands {
     bool friction = false;                  ///< some body has friction; else there are no such rows
     bool rolling = false;                   ///< some body has rolling friction, likewise
     bool turns_unevenly = false;            ///< some body is not isotropic
-    bool slender = false;                   ///< some body is slender, see kSlender
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
     std::vector<std::uint32_t> first_colour;  ///< likewise; each last colour has what is left over
     std::vector<double> mass_unit;            ///< of every coloured island, a power of two [kg]
@@ -209,12 +208,8 @@ struct ColouredIslands {
     std::vector<PairFrame> frames;              ///< of `general`
     std::vector<PairInertia> pair_inertias;     ///< likewise, if any turns unevenly
     std::vector<PairFriction> pair_friction;    ///< likewise
-    /// Responses of `general`, if any body is slender, instead of PairFriction::response. The
-    /// rounding of the response to a moment about its length would exceed the response to any
-    /// other.
-    std::vector<AcrossResponse<Eight>> slender_response;
-    std::vector<GeneralRow> rows;  ///< of `general`, see Batch::row
-    std::vector<Eight> second;     ///< likewise: the second pass's targets
+    std::vector<GeneralRow> rows;               ///< of `general`, see Batch::row
+    std::vector<Eight> second;                  ///< likewise: the second pass's targets
     /// Point responses of `general`, see Batch::response: the change of the normal velocity at one
     /// point by a unit normal impulse at another; 0 for points that a batch does not have.
     std::vector<RoughEight> point_response;

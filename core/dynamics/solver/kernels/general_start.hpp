@@ -127,10 +127,10 @@ template <bool kFriction, class F, bool kUneven>
                 to.across[in_triangle<6>(3 + i, 3 + j)] = of.turning[kAcross[i]][kAcross[j]];
             }
         }
-        with_response(lane, coloured, index, [&](const auto& in, auto& response) {
-            for (std::size_t i = 0; i < 4; ++i) store_all(in, coupled[i], response.along[i]);
-            store_all(in, to.across, response.across);
-        });
+        const auto& in = lane.template in_batch<PairFriction>();
+        AcrossResponse& response = coloured.pair_friction[index].response;
+        for (std::size_t i = 0; i < 4; ++i) store_all(in, coupled[i], response.along[i]);
+        store_all(in, to.across, response.across);
     }
 }
 

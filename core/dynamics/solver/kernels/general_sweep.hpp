@@ -64,19 +64,19 @@ struct PairMotion {
     /// @param change   change of the impulses since the last call
     [[gnu::always_inline]] void see_along(const Lane<F>& lane, ColouredIslands& coloured,
                                           std::uint32_t index, const std::array<F, 4>& change) {
-        with_response(lane, coloured, index, [&](const auto& in, const auto& response) {
-            for (std::size_t i = 0; i < 4; ++i)
-                add_scaled(in, response.along[i], change[i], motion.across);
-        });
+        const AcrossResponse& response = coloured.pair_friction[index].response;
+        for (std::size_t i = 0; i < 4; ++i)
+            add_scaled(lane.template in_batch<PairFriction>(), response.along[i], change[i],
+                       motion.across);
     }
     [[gnu::always_inline]] void see_across(const Lane<F>& lane, ColouredIslands& coloured,
                                            std::uint32_t index) {
-        with_response(lane, coloured, index, [&](const auto& in, const auto& response) {
-            for (std::size_t j = 0; j < 6; ++j)
-                for (std::size_t i = 0; i < 4; ++i)
-                    motion.along[i] =
-                        fused(in.load(response.along[i][j]), impulse.across[j], motion.along[i]);
-        });
+        const auto& in = lane.template in_batch<PairFriction>();
+        const AcrossResponse& response = coloured.pair_friction[index].response;
+        for (std::size_t j = 0; j < 6; ++j)
+            for (std::size_t i = 0; i < 4; ++i)
+                motion.along[i] =
+                    fused(in.load(response.along[i][j]), impulse.across[j], motion.along[i]);
     }
 };
 

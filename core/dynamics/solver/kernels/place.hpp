@@ -83,23 +83,12 @@ template <class F, std::size_t kSize>
     return of;
 }
 
-/// Calls use(lane, AcrossResponse<...>&) with the response of a batch.
-template <class F, class Use>
-[[gnu::always_inline]] inline void with_response(const Lane<F>& lane, ColouredIslands& coloured,
-                                                 std::uint32_t index, const Use& use) {
-    if (coloured.slender)
-        use(lane.template in_batch<AcrossResponse<Eight>>(), coloured.slender_response[index]);
-    else
-        use(lane.template in_batch<PairFriction>(), coloured.pair_friction[index].response);
-}
 template <class F>
 [[gnu::always_inline]] inline std::array<F, 21> across_response(const Lane<F>& lane,
                                                                 ColouredIslands& coloured,
                                                                 std::uint32_t index) {
-    std::array<F, 21> x;
-    with_response(lane, coloured, index,
-                  [&](const auto& in, const auto& response) { x = load_all(in, response.across); });
-    return x;
+    return load_all(lane.template in_batch<PairFriction>(),
+                    coloured.pair_friction[index].response.across);
 }
 
 /// Adds k x to `to`.

@@ -264,24 +264,21 @@ TEST(KeptContacts, AreFoundInManyLists) {
     EXPECT_TRUE(same_values(world.memory(), again.memory()));
 }
 
-/// Two that fall together, one above the other, may be stopped one after the other by what holds
-/// still: then points are found that close by the upper one's own speed, else they are not, however
-/// fast all bodies move together.
+/// Two that fall together, one above the other, may be stopped one after the other: points are
+/// found that close by the upper one's own speed.
 TEST(Margins, AreThoseOfWhatMayBeStopped) {
     const double half = 0.5, slop = kSlop * half, deepest = 2 * kDeepest * half;
     for (const BodyType& type : {sphere_type(half), box_type(Vec4::Constant(2 * half))})
         for (const double speed : {0.0, 1.0, 12.0, 1e4})
-            for (const bool held : {true, false})
-                for (const double part : {0.98, 1.02}) {
-                    const double reach = slop + (held ? std::min(speed / 240, deepest) : 0);
-                    Bodies bodies;
-                    for (const double y : {0.0, 2 * half + part * reach})
-                        add(bodies, type, {0, y, 0, 0}, {0, -speed, 0, 0});
-                    if (held) add(bodies, plane_type(Vec4::UnitY(), -100));
-                    const StepData step = solved(bodies, without_gravity(), 1.0 / 240, 1);
-                    EXPECT_EQ(step.contacts.empty(), part > 1) << speed << " " << held;
-                    EXPECT_LT((step.velocity[1] + speed * Vec4::UnitY()).norm(), 1e-12);
-                }
+            for (const double part : {0.98, 1.02}) {
+                const double reach = slop + std::min(speed / 240, deepest);
+                Bodies bodies;
+                for (const double y : {0.0, 2 * half + part * reach})
+                    add(bodies, type, {0, y, 0, 0}, {0, -speed, 0, 0});
+                const StepData step = solved(bodies, without_gravity(), 1.0 / 240, 1);
+                EXPECT_EQ(step.contacts.empty(), part > 1) << speed;
+                EXPECT_LT((step.velocity[1] + speed * Vec4::UnitY()).norm(), 1e-12);
+            }
 }
 
 /// Twenty rows high, half a metre thick: it swayed by 10 mm/s for many seconds.

@@ -42,7 +42,7 @@ TEST(Push, IsNoneWhereTurningWouldMakeItsReturnAThrow) {
         EXPECT_FALSE(turns(needle, {0, 0, 0, 4000, 0, 0}, across, random));
         // In its own plane, or next to nothing.
         EXPECT_FALSE(turns(needle, {10, 0, 0, 0, 0, 0}, across, random));
-        EXPECT_FALSE(turns(needle, {0, 0, 10, 0, 0, 0}, {0, 0, 0, 1e-3, 0, 0}, random));
+        EXPECT_FALSE(turns(needle, {0, 0, 10, 0, 0, 0}, {0, 0, 0, 1e-5, 0, 0}, random));
         EXPECT_FALSE(turns(sphere_type(0.5), {100, 0, 0, 0, 0, 0}, roll, random));
         EXPECT_FALSE(turns(box_type(Vec4::Ones()), {100, 0, 0, 0, 0, 0}, roll, random));
     }
