@@ -51,7 +51,7 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
     g.of_coloured = &of_coloured;
     g.simulation = &simulation;
     g.step = &step;
-    const auto size = [&](std::uint32_t island) { return step.islands.contacts[island]; };
+    const auto size = [&](std::uint32_t island) { return step.islands.size_of(island); };
 
     // Those worth a message by falling size. The order of the small ones is all the same.
     g.order.clear();

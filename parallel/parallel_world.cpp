@@ -26,6 +26,8 @@ class ParallelWorld::StageSpans : public StageObserver {
 ParallelWorld::ParallelWorld(Bodies bodies, const PhysicsSettings& settings)
     : world_(std::move(bodies), settings) {}
 
+ParallelWorld::ParallelWorld(Simulation simulation) : world_(std::move(simulation)) {}
+
 ParallelWorld::~ParallelWorld() = default;
 
 StepReport ParallelWorld::step(double dt) {

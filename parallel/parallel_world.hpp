@@ -15,6 +15,7 @@ class ParallelWorld {
   public:
     /// @throws InputError   as make_simulation()
     ParallelWorld(Bodies bodies, const PhysicsSettings& settings);
+    explicit ParallelWorld(Simulation simulation);
     ~ParallelWorld();
 
     /// Advances by dt [s], on the threads of the arena in which the first call is made: every call

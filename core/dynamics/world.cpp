@@ -17,7 +17,7 @@ namespace tesserae {
 namespace {
 
 /// Items of a range at least: some 10 to 50 us of work, far more than a thread costs that takes it.
-constexpr std::size_t kBodyGrain = 256, kPairGrain = 64, kContactGrain = 1024;
+constexpr std::size_t kBodyGrain = 256, kPairGrain = 64, kContactGrain = 1024, kJointGrain = 16;
 
 }  // namespace
 
@@ -57,6 +57,7 @@ StepReport World::step(double dt, Schedule& schedule) {
         find_pairs(schedule);          // broad phase
         stop_fast_bodies(schedule, FastBodies::Half::kFirst);  // nothing passes through
         find_contacts(schedule);  // narrow phase, contacts keyed by feature id
+        pose_joints(schedule);
         build_islands();
         solve_impacts(schedule);         // what hits: compression, restitution
         integrate_velocities(schedule);  // gravity
@@ -91,6 +92,7 @@ void World::find_pairs_anew(Schedule& schedule) {
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain,
                             [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
     schedule.find_pairs(simulation_, step_);
+    leave_jointed_pairs_out(simulation_, step_);
 }
 
 void World::find_contacts(Schedule& schedule) {
@@ -137,7 +139,10 @@ bool World::wake_touched(Schedule& schedule) {
     const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
     const bool wakes = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
                        tesserae::wake_touched(simulation_, step_);
-    if (wakes) schedule.choose_pairs(simulation_, step_);
+    if (wakes) {
+        schedule.choose_pairs(simulation_, step_);
+        leave_jointed_pairs_out(simulation_, step_);
+    }
     return wakes;
 }
 
@@ -152,6 +157,13 @@ void World::aim_rims(Schedule& schedule) {
     count_company(simulation_, step_);
     const auto aim = [&](Range runs) { tesserae::aim_rims(simulation_, step_, runs); };
     schedule.for_each_range(step_.contacts.run_count(), kContactGrain, aim);
+}
+
+void World::pose_joints(Schedule& schedule) {
+    list_joints(simulation_, step_);
+    schedule.for_each_range(step_.constraints.size(), kJointGrain, [&](Range joints) {
+        tesserae::pose_joints(simulation_, step_, joints.begin, joints.end);
+    });
 }
 
 void World::build_islands() {

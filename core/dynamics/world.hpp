@@ -57,6 +57,7 @@ class World {
     void find_warm_starts(Schedule& schedule);
     void aim_rims(Schedule& schedule);
     const std::vector<KeptManifolds>& last_kept() const;
+    void pose_joints(Schedule& schedule);
     void build_islands();
     void solve_impacts(Schedule& schedule);
     void integrate_velocities(Schedule& schedule);

@@ -14,6 +14,10 @@ constexpr std::size_t kImpulseBytes = 3 * 4 + 8 + 4 * 4;
 /// Of each, where there is rolling friction; files of before there was have none.
 constexpr std::size_t kAngularBytes = 6 * 8;
 constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
+constexpr std::size_t kJointBytes = 10 * 8;
+/// Part of the number of manifolds if a number of joints follows it: files without joints are as
+/// they were before there were any.
+constexpr std::uint64_t kHasJoints = std::uint64_t{1} << 63;
 constexpr std::size_t kManifoldBytes = 2 * 4 + 12 * 8;
 /// Rows, first, hash, step, numbers of impulses, of bodies and of manifolds.
 constexpr std::size_t kFixedBytes = 8 * 8;
@@ -26,6 +30,11 @@ void put(std::string& bytes, const Value& value) {
 
 void put(std::string& bytes, const Bivector& b) {
     for (const double plane : {b.xy, b.xz, b.xw, b.yz, b.yw, b.zw}) put(bytes, plane);
+}
+
+void put(std::string& bytes, const Wrench& wrench) {
+    for (int axis = 0; axis < 4; ++axis) put(bytes, wrench.impulse[axis]);
+    put(bytes, wrench.moment);
 }
 
 void put(std::string& bytes, const KeptManifold& m) {
@@ -47,6 +56,11 @@ void take(std::string_view& bytes, Bivector& b) {
     for (double* plane : {&b.xy, &b.xz, &b.xw, &b.yz, &b.yw, &b.zw}) take(bytes, *plane);
 }
 
+void take(std::string_view& bytes, Wrench& wrench) {
+    for (int axis = 0; axis < 4; ++axis) take(bytes, wrench.impulse[axis]);
+    take(bytes, wrench.moment);
+}
+
 void take(std::string_view& bytes, KeptManifold& m) {
     take(bytes, m.a);
     take(bytes, m.b);
@@ -59,12 +73,13 @@ void take(std::string_view& bytes, KeptManifold& m) {
 }  // namespace
 
 std::string to_bytes(const ResumeRecord& record) {
-    std::size_t manifolds = 0;
+    std::uint64_t manifolds = 0;
     for (const KeptManifolds& list : record.memory.kept) manifolds += list.size();
     std::string bytes;
     bytes.reserve(kFrontBytes + kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
                   record.memory.angular_impulses.size() * kAngularBytes +
-                  record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes);
+                  record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes +
+                  sizeof(std::uint64_t) + record.memory.joint_impulses.size() * kJointBytes);
     bytes.resize(kFrontBytes);
     put(bytes, record.rows);
     put(bytes, record.first);
@@ -76,7 +91,9 @@ std::string to_bytes(const ResumeRecord& record) {
                memory.angular_impulses.size() == memory.impulses.size());
     put(bytes, static_cast<std::uint64_t>(memory.impulses.size()));
     put(bytes, static_cast<std::uint64_t>(memory.asleep.size()));
-    put(bytes, static_cast<std::uint64_t>(manifolds));
+    const std::uint64_t joints = memory.joint_impulses.size();
+    put(bytes, manifolds | (joints > 0 ? kHasJoints : 0));
+    if (joints > 0) put(bytes, joints);
     for (const KeptImpulse& impulse : memory.impulses) {
         put(bytes, impulse.a);
         put(bytes, impulse.b);
@@ -88,6 +105,7 @@ std::string to_bytes(const ResumeRecord& record) {
     for (double time : memory.still) put(bytes, time);
     for (const KeptManifolds& list : memory.kept)
         for (const auto& manifold : list) put(bytes, *manifold);
+    for (const Wrench& impulse : memory.joint_impulses) put(bytes, impulse);
     for (const Bivector& impulse : memory.angular_impulses) put(bytes, impulse);
     // In one string, whose front is known last: the record may be as large as what it saves.
     const std::string_view body = std::string_view(bytes).substr(kFrontBytes);
@@ -109,7 +127,7 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (hash_of(bytes) != hash) return std::nullopt;
 
     ResumeRecord record;
-    std::uint64_t impulses = 0, bodies = 0, manifolds = 0;
+    std::uint64_t impulses = 0, bodies = 0, manifolds = 0, joints = 0;
     take(bytes, record.rows);
     take(bytes, record.first);
     take(bytes, record.hash);
@@ -117,11 +135,16 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     take(bytes, impulses);
     take(bytes, bodies);
     take(bytes, manifolds);
+    if ((manifolds & kHasJoints) != 0) {
+        manifolds &= ~kHasJoints;
+        if (bytes.size() < sizeof joints) return std::nullopt;
+        take(bytes, joints);
+    }
     if (impulses > bytes.size() / kImpulseBytes || bodies > bytes.size() / kBodyBytes ||
-        manifolds > bytes.size() / kManifoldBytes)
+        manifolds > bytes.size() / kManifoldBytes || joints > bytes.size() / kJointBytes)
         return std::nullopt;
-    const std::uint64_t plain =
-        impulses * kImpulseBytes + bodies * kBodyBytes + manifolds * kManifoldBytes;
+    const std::uint64_t plain = impulses * kImpulseBytes + bodies * kBodyBytes +
+                                manifolds * kManifoldBytes + joints * kJointBytes;
     const bool has_angular = bytes.size() != plain;
     const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
@@ -145,6 +168,8 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
         take(bytes, manifold);
         record.memory.kept[0].push_back(std::make_shared<KeptManifold>(manifold));
     }
+    record.memory.joint_impulses.resize(joints);
+    for (Wrench& impulse : record.memory.joint_impulses) take(bytes, impulse);
     if (has_angular) record.memory.angular_impulses.resize(impulses);
     for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;

@@ -25,7 +25,7 @@ Bivector at_least(double least, const Bivector& b) {
             std::max(b.yz, least), std::max(b.yw, least), std::max(b.zw, least)};
 }
 
-TypeProperties properties_of(const BodyType& type) {
+TypeProperties properties_of(const BodyType& type, bool jointed) {
     TypeProperties p;
     p.friction = type.friction;
     p.rolling_friction = type.rolling_friction;
@@ -54,7 +54,7 @@ TypeProperties properties_of(const BodyType& type) {
     p.movable = is_movable(type);
     p.falls = !type.fixed_position;
     if (!type.fixed_position) p.inverse_mass = 1 / type.mass;
-    const bool slips_round = p.arm == 0 && type.friction == 0;
+    const bool slips_round = p.arm == 0 && type.friction == 0 && !jointed;
     if (!type.fixed_rotation && !slips_round) p.inverse_inertia = inverse(p.inertia);
     const double first = p.inverse_inertia.xy;
     p.isotropic = p.inverse_inertia == Bivector{first, first, first, first, first, first};
@@ -75,10 +75,13 @@ double slenderness(const TypeProperties& type) {
 
 }  // namespace
 
-std::vector<TypeProperties> type_properties(const Bodies& bodies) {
+std::vector<TypeProperties> type_properties(const Bodies& bodies, std::span<const BodyId> jointed) {
+    std::vector<bool> of_jointed(bodies.types.size(), false);
+    for (const BodyId id : jointed) of_jointed[bodies.type[id]] = true;
     std::vector<TypeProperties> all;
     all.reserve(bodies.types.size());
-    for (const BodyType& type : bodies.types) all.push_back(properties_of(type));
+    for (std::size_t i = 0; i < bodies.types.size(); ++i)
+        all.push_back(properties_of(bodies.types[i], of_jointed[i]));
     return all;
 }
 

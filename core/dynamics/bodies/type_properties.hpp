@@ -14,8 +14,8 @@ struct TypeProperties {
     double inverse_mass = 0;   ///< [1/kg]; 0 if the position is fixed
     Bivector inertia;          ///< principal axes, diagonal: I_ij = J_i + J_j [kg m^2]
     Bivector inverse_inertia;  ///< the inverses that contacts act by; 0 if the rotation is fixed,
-                               ///< and for a hypersphere without friction: normals go through its
-                               ///< centre and turn nothing
+                               ///< and for a hypersphere without friction or joints: normals go
+                               ///< through its centre and turn nothing
     bool isotropic = true;     ///< all six inverses are equal
     /// True for an isotropic hypersphere, which no normal impulse turns, and for all that contacts
     /// do not move.
@@ -38,7 +38,9 @@ struct TypeProperties {
 };
 
 /// Returns the properties of each of bodies.types.
-std::vector<TypeProperties> type_properties(const Bodies& bodies);
+/// @param jointed   bodies that have joints
+std::vector<TypeProperties> type_properties(const Bodies& bodies,
+                                            std::span<const BodyId> jointed = {});
 
 /// The range of a scene's masses and sizes, for islands that are solved in float.
 struct FloatRange {

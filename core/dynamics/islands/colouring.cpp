@@ -16,8 +16,8 @@ namespace {
 constexpr int kColours = 64;
 
 /// Within a colour the pairs of round bodies come first, then those of 8, 7, ..., 1 points, so that
-/// the lanes of a batch have about as many.
-constexpr std::size_t kKinds = 1 + kManifoldPoints;
+/// the lanes of a batch have about as many, and then the constraints that are no contacts.
+constexpr std::size_t kOthers = 1 + kManifoldPoints, kKinds = kOthers + 1;
 
 template <std::size_t kTangents, class Lanes>
 void size_impulses(std::size_t rows, bool friction, RowImpulses<kTangents, Lanes>& impulses) {
@@ -35,6 +35,7 @@ void size_directions(ColouredIslands& coloured) {
     size_impulses(coloured.general_rows, coloured.friction, coloured.general_direction);
     resize_anew(coloured.round_work, coloured.round.size());
     resize_anew(coloured.general_work, coloured.general.size());
+    resize_anew(coloured.others_work, coloured.others.size());
 }
 
 }  // namespace
@@ -51,6 +52,7 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.colours.clear();
     coloured.round.clear();
     coloured.general.clear();
+    coloured.others.clear();
     coloured.general_rows = coloured.point_responses = 0;
     place_.clear();
     used_.clear();
@@ -74,12 +76,13 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
         const BatchRange round =
             add_batches(step, {start[0], start[1]}, one_row_each, coloured.round);
         const BatchRange general =
-            add_batches(step, {start[1], start[kKinds]}, coloured.general_rows, coloured.general);
+            add_batches(step, {start[1], start[kOthers]}, coloured.general_rows, coloured.general);
         for (std::uint32_t i = general.begin; i < general.end; ++i) {
             coloured.general[i].response = coloured.point_responses;
             coloured.point_responses += responses_of(coloured.general[i].rows);
         }
-        coloured.colours.push_back({round, general});
+        coloured.colours.push_back(
+            {round, general, add_others(step, {start[kOthers], start[kKinds]})});
     }
     coloured.first_colour.push_back(static_cast<std::uint32_t>(coloured.colours.size()));
 
@@ -139,12 +142,20 @@ void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::si
         for (std::size_t begin = run.begin; begin < run.end; begin += kManifoldPoints)
             add_pair(simulation, step, run, {begin, std::min(run.end, begin + kManifoldPoints)});
     }
+    for (const std::uint32_t i : step.islands.constraints_in(island)) {
+        Constraint& constraint = step.constraints[i];
+        constraint.place_a = place_of(simulation, step, constraint.a);
+        constraint.place_b = place_of(simulation, step, constraint.b);
+        used_.resize(step.coloured.bodies.size(), 0);
+        const int colour = colour_of(constraint.place_a, constraint.place_b);
+        pairs_.push_back({i, static_cast<std::uint16_t>(colour * kKinds + kOthers), 0});
+    }
 }
 
 void Colouring::add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
                          Range contacts) {
     Pair pair;
-    pair.contact = static_cast<std::uint32_t>(contacts.begin);
+    pair.first = static_cast<std::uint32_t>(contacts.begin);
     const std::uint32_t a = place_of(simulation, step, run.a);
     const std::uint32_t b = place_of(simulation, step, run.b);
     const std::size_t points = contacts.end - contacts.begin;
@@ -168,6 +179,15 @@ int Colouring::colour_of(std::uint32_t a, std::uint32_t b) {
     return colour;
 }
 
+BatchRange Colouring::add_others(StepData& step, Range some) const {
+    std::vector<std::uint32_t>& others = step.coloured.others;
+    BatchRange range;
+    range.begin = static_cast<std::uint32_t>(others.size());
+    for (std::size_t i = some.begin; i < some.end; ++i) others.push_back(pairs_[order_[i]].first);
+    range.end = static_cast<std::uint32_t>(others.size());
+    return range;
+}
+
 BatchRange Colouring::add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
                                   std::vector<Batch>& batches) const {
     BatchRange range;
@@ -177,9 +197,9 @@ BatchRange Colouring::add_batches(const StepData& step, Range pairs, std::uint32
         batch.row = rows;
         for (std::size_t k = 0; k < std::min(kLanes, pairs.end - begin); ++k) {
             const Pair& pair = pairs_[order_[begin + k]];
-            const auto [a, b] = step.contacts.pair(pair.contact);
+            const auto [a, b] = step.contacts.pair(pair.first);
             batch.a[k] = place_[a], batch.b[k] = place_[b];
-            batch.contact[k] = pair.contact, batch.points[k] = pair.points;
+            batch.contact[k] = pair.first, batch.points[k] = pair.points;
             batch.rows = std::max<std::uint32_t>(batch.rows, pair.points);
         }
         rows += batch.rows;

@@ -17,17 +17,19 @@ class Colouring {
     void end(StepData& step);
 
   private:
-    /// The contacts of two bodies, which follow each other in StepData::contacts.
+    /// The contacts of two bodies, which follow each other in StepData::contacts; or another
+    /// constraint.
     struct Pair {
-        std::uint32_t contact;  ///< the first one
+        std::uint32_t first;  ///< the first contact, or the number in StepData::constraints
         std::uint16_t bucket;
-        std::uint8_t points;
+        std::uint8_t points;  ///< 0 for another constraint
     };
     void list_pairs(const Simulation& simulation, StepData& step, std::size_t island);
     void add_pair(const Simulation& simulation, StepData& step, const ContactList::Run& run,
                   Range contacts);
     std::uint32_t place_of(const Simulation& simulation, StepData& step, BodyId id);
     int colour_of(std::uint32_t a, std::uint32_t b);
+    BatchRange add_others(StepData& step, Range some) const;
     BatchRange add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
                            std::vector<Batch>& batches) const;
 

@@ -45,13 +45,14 @@ void ImpactPatches::begin(const Simulation& simulation, StepData& step,
     next_.resize(near_.size());
     parent_.resize(near_.size());
     for (std::size_t island = 0; island < islands_; ++island)
-        if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom)
+        if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom &&
+            islands.constraints_in(island).empty())
             add_patches(step, island);
     if (patched_.empty()) return;
     step.rows.resize(rows_);
     if (simulation.needs.rolling) step.rolling_rows.resize(rows_);
-    step.bodies_of_rows.resize(2 * rows_);
-    step.motions_of_rows.resize(2 * rows_);
+    step.bodies_of_rows.resize(2 * (rows_ + step.constraints.size()));
+    step.motions_of_rows.resize(2 * (rows_ + step.constraints.size()));
 }
 
 /// @return how many of the bodies (places in ColouredIslands::bodies) are hit
@@ -115,6 +116,7 @@ void ImpactPatches::add_island(StepData& step, std::span<const Pair> pairs) {
         contacts += static_cast<std::uint32_t>(step.contacts.nth_run(pair.run).size());
     }
     islands.first.push_back(static_cast<std::uint32_t>(islands.runs.size()));
+    islands.first_constraint.push_back(islands.first_constraint.back());
     islands.contacts.push_back(contacts);
     islands.coloured.push_back(Islands::kNotColoured);
     islands.held.push_back(1);
@@ -195,6 +197,7 @@ bool ImpactPatches::end(const Simulation& simulation, StepData& step) {
     Islands& islands = step.islands;
     islands.runs.resize(runs_);
     islands.first.resize(islands_ + 1);
+    islands.first_constraint.resize(islands_ + 1);
     const auto take_back = [&](auto&... lists) { (lists.resize(islands_), ...); };
     take_back(islands.contacts, islands.coloured, islands.held, islands.conjugates,
               islands.falling_mass, islands.first_row, step.residual, step.has_rows, step.was_hit,

@@ -10,6 +10,12 @@
 #include "core/error.hpp"
 
 namespace tesserae {
+namespace {
+
+/// The number of a body that is in no island.
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
 
 BodyId IslandBuilder::root_of(BodyId id) {
     while (parent_[id] != id) id = parent_[id] = parent_[parent_[id]];
@@ -39,57 +45,45 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     colouring_.end(step);
     resize_anew(step.rows, rows);
     if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
-    resize_anew(step.bodies_of_rows, 2 * std::size_t{rows});
-    resize_anew(step.motions_of_rows, 2 * std::size_t{rows});
+    const std::size_t all_rows = rows + step.constraints.size();
+    resize_anew(step.bodies_of_rows, 2 * all_rows);
+    resize_anew(step.motions_of_rows, 2 * all_rows);
 }
 
 bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {
-    const std::uint32_t contacts = islands.contacts[island];
-    if (!islands.held[island]) return contacts >= coloured_from_.free;
+    const std::uint32_t size = islands.size_of(island);
+    if (!islands.held[island]) return size >= coloured_from_.free;
     const bool unequal =
         islands.conjugates[island] && most_mass_[island] > kUnequalMasses * least_mass_[island];
-    return contacts >= (unequal ? coloured_from_.unequal : coloured_from_.held);
+    return size >= (unequal ? coloured_from_.unequal : coloured_from_.held);
 }
 
-void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
-    const ContactList& contacts = step.contacts;
-    TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
-    const auto movable = [&](BodyId id) { return simulation.type_of(id).movable; };
+/// Joins two bodies if both are movable, the lower root above the higher one.
+/// @return one that is movable
+BodyId IslandBuilder::join(const Simulation& simulation, BodyId a, BodyId b) {
+    if (!simulation.type_of(a).movable) return b;
+    if (!simulation.type_of(b).movable) return a;
+    const BodyId p = root_of(a), q = root_of(b);
+    parent_[std::max(p, q)] = std::min(p, q);
+    return a;
+}
 
-    // Join, the lower root above the higher one.
-    resize_anew(parent_, simulation.bodies.size());
-    std::iota(parent_.begin(), parent_.end(), BodyId{0});
-    resize_anew(member_, contacts.run_count());
-    for (std::size_t i = 0; i < member_.size(); ++i) {
-        const ContactList::Run run = contacts.nth_run(i);
-        member_[i] = movable(run.a) ? run.a : run.b;
-        if (!movable(run.a) || !movable(run.b)) continue;
-        const BodyId p = root_of(run.a), q = root_of(run.b);
-        parent_[std::max(p, q)] = std::min(p, q);
-    }
-    for (BodyId& member : member_) member = root_of(member);
-
-    // Number the roots that have contacts, ascending.
-    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+/// Numbers the roots that have contacts or other constraints, ascending.
+/// @return their number
+std::uint32_t IslandBuilder::number_islands() {
     number_.assign(parent_.size(), kNone);
     for (const BodyId root : member_) number_[root] = 0;
     std::uint32_t count = 0;
     for (std::uint32_t& number : number_)
         if (number != kNone) number = count++;
+    return count;
+}
 
-    Islands& islands = step.islands;
-    islands.held.assign(count, 0);
-    islands.contacts.assign(count, 0);
-    islands.conjugates.assign(count, 1);
+/// Adds up the masses of each island's bodies.
+void IslandBuilder::weigh_islands(const Simulation& simulation, Islands& islands) {
+    const std::size_t count = islands.contacts.size();
     least_mass_.assign(count, std::numeric_limits<double>::infinity());
     most_mass_.assign(count, 0);
-    for (std::size_t i = 0; i < member_.size(); ++i) {
-        const ContactList::Run run = contacts.nth_run(i);
-        const std::uint32_t island = number_[member_[i]];
-        if (!movable(run.a) || !movable(run.b)) islands.held[island] = 1;
-        islands.contacts[island] += static_cast<std::uint32_t>(run.size());
-        if (!has_conjugates(simulation, run.a, run.b)) islands.conjugates[island] = 0;
-    }
     islands.falling_mass.assign(count, 0);
     for (BodyId id = 0; id < parent_.size(); ++id) {
         const TypeProperties& type = simulation.type_of(id);
@@ -99,12 +93,55 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
         most_mass_[island] = std::max(most_mass_[island], type.mass);
         if (type.falls) islands.falling_mass[island] += type.mass;
     }
-    resize_anew(islands.runs, member_.size());
-    counting_sort(
-        member_.size(), count, [&](std::size_t i) { return number_[member_[i]]; }, islands.first,
-        [&](std::size_t i, std::size_t place) {
-            islands.runs[place] = static_cast<std::uint32_t>(i);
-        });
+}
+
+void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step) {
+    const ContactList& contacts = step.contacts;
+    TSR_ASSERT(contacts.size() < std::numeric_limits<std::uint32_t>::max());
+    const std::size_t runs = contacts.run_count(), all = runs + step.constraints.size();
+    const auto bodies_of = [&](std::size_t i) -> BodyPair {
+        if (i >= runs) return {step.constraints[i - runs].a, step.constraints[i - runs].b};
+        const ContactList::Run run = contacts.nth_run(i);
+        return {run.a, run.b};
+    };
+
+    resize_anew(parent_, simulation.bodies.size());
+    std::iota(parent_.begin(), parent_.end(), BodyId{0});
+    resize_anew(member_, all);
+    for (std::size_t i = 0; i < all; ++i) {
+        const BodyPair bodies = bodies_of(i);
+        member_[i] = join(simulation, bodies.a, bodies.b);
+    }
+    for (BodyId& member : member_) member = root_of(member);
+    const std::uint32_t count = number_islands();
+
+    Islands& islands = step.islands;
+    islands.held.assign(count, 0);
+    islands.contacts.assign(count, 0);
+    islands.conjugates.assign(count, 1);
+    for (std::size_t i = 0; i < all; ++i) {
+        const auto [a, b] = bodies_of(i);
+        const std::uint32_t island = number_[member_[i]];
+        if (!simulation.type_of(a).movable || !simulation.type_of(b).movable)
+            islands.held[island] = 1;
+        if (i < runs)
+            islands.contacts[island] += static_cast<std::uint32_t>(contacts.nth_run(i).size());
+        if (i < runs ? !has_conjugates(simulation, a, b)
+                     : step.constraints[i - runs].compliance > 0)
+            islands.conjugates[island] = 0;
+    }
+    weigh_islands(simulation, islands);
+    const auto sort = [&](std::size_t first, std::size_t size, std::vector<std::uint32_t>& starts,
+                          std::vector<std::uint32_t>& sorted) {
+        resize_anew(sorted, size);
+        counting_sort(
+            size, count, [&](std::size_t i) { return number_[member_[first + i]]; }, starts,
+            [&](std::size_t i, std::size_t place) {
+                sorted[place] = static_cast<std::uint32_t>(i);
+            });
+    };
+    sort(0, runs, islands.first, islands.runs);
+    sort(runs, step.constraints.size(), islands.first_constraint, islands.constraints);
 }
 
 }  // namespace tesserae

@@ -17,24 +17,29 @@ struct ColouredFrom {
         : held(both), unequal(both), free(both) {}  // NOLINT: meant to convert
 };
 
-/// Joins the movable bodies of every contact (union-find) and sorts the contacts by island.
+/// Joins the movable bodies of every contact and other constraint (union-find) and sorts these by
+/// island.
 class IslandBuilder {
   public:
     /// @param coloured_from   for tests and measurements
     explicit IslandBuilder(ColouredFrom coloured_from = {}) : coloured_from_(coloured_from) {}
 
-    /// Builds step.islands, and the rows and batches of their contacts, from step.contacts. Every
-    /// contact must have a movable body.
+    /// Builds step.islands, and the rows and batches of their contacts, from step.contacts and
+    /// step.constraints. Each of them must have a movable body.
     void build(const Simulation& simulation, StepData& step);
 
   private:
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
     bool is_coloured(const Islands& islands, std::size_t island) const;
+    BodyId join(const Simulation& simulation, BodyId a, BodyId b);
+    std::uint32_t number_islands();
+    void weigh_islands(const Simulation& simulation, Islands& islands);
     void sort_by_island(const Simulation& simulation, StepData& step);
 
     std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
-    std::vector<BodyId> member_;  ///< of every run of contacts: a movable body, then its root
+    /// Of every run of contacts, and then of every other constraint: a movable body, then its root.
+    std::vector<BodyId> member_;
     std::vector<std::uint32_t> number_;           ///< of the island whose root the body is
     std::vector<double> least_mass_, most_mass_;  ///< of every island's bodies [kg]
     Colouring colouring_;

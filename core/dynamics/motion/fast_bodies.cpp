@@ -84,6 +84,19 @@ void FastBodies::find_candidates(const Simulation& simulation, const StepData& s
     });
 }
 
+/// With all that joints connect with it: else its joints would be torn apart.
+void FastBodies::stop_at(const Simulation& simulation, const StepData& step, BodyId id,
+                         double time) {
+    const auto stop = [&](BodyId one) {
+        if (stop_[one] != kNoImpact || !can_stop(simulation, step, one)) return;
+        stop_[one] = time;
+        stopped_.push_back(one);
+    };
+    stop(id);
+    if (!simulation.type_of(id).movable) return;
+    for (const BodyId other : simulation.joints.connected_with(id)) stop(other);
+}
+
 double FastBodies::look_at(const Simulation& simulation, const StepData& step,
                            const Candidate& candidate, double from,
                            std::vector<Contact>& scratch) const {
@@ -119,10 +132,7 @@ void FastBodies::take_impacts(const Simulation& simulation, const StepData& step
         candidate.time = kNoImpact;
         const std::size_t first = stopped_.size();
         for (const BodyId id : {candidate.a, candidate.b})
-            if (stop_[id] == kNoImpact && can_stop(simulation, step, id)) {
-                stop_[id] = impact.time;
-                stopped_.push_back(id);
-            }
+            stop_at(simulation, step, id, impact.time);
         for (std::size_t i = first; i < stopped_.size(); ++i) {
             const BodyId id = stopped_[i];
             auto met = std::lower_bound(met_.begin(), met_.end(), std::pair(id, std::uint32_t{0}));

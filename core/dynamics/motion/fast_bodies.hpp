@@ -39,7 +39,7 @@ class FastBodies {
     void find_candidates(const Simulation& simulation, const StepData& step, Schedule& schedule);
     void list_impacts();
     void take_impacts(const Simulation& simulation, const StepData& step);
-    void stop_body(const Simulation& simulation, const StepData& step, BodyId id, double time);
+    void stop_at(const Simulation& simulation, const StepData& step, BodyId id, double time);
     double look_at(const Simulation& simulation, const StepData& step, const Candidate& candidate,
                    double from, std::vector<Contact>& scratch) const;
 

@@ -51,7 +51,16 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
         };
         // Most islands that move show it soon.
         const auto runs = step.islands.runs_in(island);
-        if (std::all_of(runs.begin(), runs.end(),
+        const auto others = step.islands.constraints_in(island);
+        if (std::all_of(others.begin(), others.end(),
+                        [&](std::uint32_t n) {
+                            const Constraint& c = step.constraints[n];
+                            if (!simulation.type_of(c.a).movable ||
+                                !simulation.type_of(c.b).movable)
+                                is_supported = true;
+                            return rests(c.a) && rests(c.b);
+                        }) &&
+            std::all_of(runs.begin(), runs.end(),
                         [&](std::uint32_t n) {
                             const ContactList::Run run = step.contacts.nth_run(n);
                             if (!simulation.type_of(run.a).movable ||
@@ -114,12 +123,18 @@ void fall_asleep(Simulation& simulation, StepData& step) {
                            still[id] >= kTimeToSleep && stands_still(step, id);
         next[id] = rests ? id : kAwake;
     }
-    for (std::size_t island = 0; island < lowest.size(); ++island)
+    for (std::size_t island = 0; island < lowest.size(); ++island) {
+        const auto sleep = [&](BodyId a, BodyId b) {
+            for (const BodyId id : {a, b})
+                if (simulation.type_of(id).movable) next[id] = lowest[island];
+        };
         for (const std::uint32_t n : step.islands.runs_in(island)) {
             const ContactList::Run run = step.contacts.nth_run(n);
-            for (const BodyId id : {run.a, run.b})
-                if (simulation.type_of(id).movable) next[id] = lowest[island];
+            sleep(run.a, run.b);
         }
+        for (const std::uint32_t n : step.islands.constraints_in(island))
+            sleep(step.constraints[n].a, step.constraints[n].b);
+    }
 
     for (BodyId id = 0; id < count; ++id) {
         if (is_asleep(step, id) || next[id] == kAwake) continue;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/dynamics/solver/constraint_rows.hpp"
 #include "core/dynamics/solver/kernels/kernels.hpp"
 
 // A coloured island as the passes of the solver see it: its bodies and colours.
@@ -126,14 +127,24 @@ class ColouredIsland {
     ColouredStage stage_;
 };
 
-/// Calls round(stage, batches) and general(stage, batches) for pieces of all batches.
-template <class Threads, class Round, class General>
+/// Returns the constraints of a coloured island that are no contacts, or some of them.
+/// @param some   in ColouredIslands::others
+inline ConstraintRows<MotionOfChanges> others_of(const ColouredStage& stage, BatchRange some) {
+    const std::vector<std::uint32_t>& others = stage.step.coloured.others;
+    return {stage.simulation, stage.step,
+            std::span(others).subspan(some.begin, some.end - some.begin)};
+}
+
+/// Calls round(batches), general(batches) and others(constraints) for pieces of all batches and
+/// constraints.
+template <class Threads, class Round, class General, class Others>
 void for_all_rows(const ColouredIsland& island, const Threads& threads, const Round& round,
-                  const General& general) {
+                  const General& general, const Others& others) {
     island.for_colours(threads, LaneCount::kOne, false,
                        [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
                            at_work.for_batches(batches.round, 1, round);
                            at_work.for_batches(batches.general, kManifoldPoints, general);
+                           at_work.for_batches(batches.others, kManifoldPoints, others);
                        });
 }
 
@@ -144,7 +155,8 @@ void leave_part_of_load(const ColouredIsland& island, const Threads& threads, do
     const auto left = static_cast<float>(part);
     for_all_rows(
         island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, left); },
-        [&](BatchRange some) { leave_part_of_general(stage, some, left); });
+        [&](BatchRange some) { leave_part_of_general(stage, some, left); },
+        [&](BatchRange some) { others_of(stage, some).leave_part(left); });
     threads.for_bodies(island.bodies(),
                        [&](Range bodies) { leave_part_of_changes(stage, bodies, left); });
 }

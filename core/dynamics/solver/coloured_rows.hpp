@@ -10,7 +10,8 @@
 
 namespace tesserae {
 
-/// The IslandRows of a coloured island, which are solved in float, eight contacts at a time.
+/// The IslandRows of a coloured island. Contacts are solved in float, eight at a time, and before
+/// them, in each colour, all other constraints, one by one in double.
 /// Velocities are changes since the sub-step's start, which are added to the state at the end.
 /// Targets are relative to the start's velocities and are computed in double. So neither a body's
 /// place nor its speed costs accuracy. The points of a pair are one item of a colour: its bodies
@@ -60,6 +61,14 @@ class ColouredRows {
     void for_bodies(const Work& work) const {
         threads_.for_bodies(island_.bodies(), [&](Range some) { work(stage(), some); });
     }
+    /// Calls visit(ConstraintRows) for all constraints that are no contacts, on this thread.
+    template <class Visit>
+    void for_others(const Visit& visit) const {
+        island_.for_colours(OneThread{}, LaneCount::kOne, false,
+                            [&](const ColourBatches& batches, const auto&, LaneCount) {
+                                visit(others_of(stage(), batches.others));
+                            });
+    }
     template <class Directions = NoDirections>
     double sweep(Sweep sweep, const Directions& directions = {});
     double work() const;
@@ -83,7 +92,7 @@ Impact ColouredRows<Threads>::impact() const {
 
 template <class Threads>
 Effort ColouredRows<Threads>::effort_of(const Impact& impact) const {
-    const std::uint32_t contacts = step().islands.contacts[island()];
+    const std::uint32_t contacts = step().islands.size_of(island());
     return impact.returned > 0 && along_directions()
                ? effort_of_bounce(simulation(), contacts, impact.fastest)
                : effort_of_large_impact(simulation(), contacts, impact.fastest);
@@ -98,6 +107,9 @@ void ColouredRows<Threads>::start(Cause cause) {
     island_.for_colours(
         threads_, lanes_, false,
         [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
+            at_work.for_batches(batches.others, kManifoldPoints, [&](BatchRange some) {
+                others_of(stage(), some).start(stage().cause);
+            });
             at_work.for_batches(batches.round, 1,
                                 [&](BatchRange some) { start_round(stage(), some, at_once); });
             at_work.for_batches(batches.general, kManifoldPoints,
@@ -125,12 +137,23 @@ double ColouredRows<Threads>::sweep(Sweep sweep, const Directions& directions) {
                     return sweep_general(stage(), some, sweep, at_once);
                 });
             };
+            const auto others = [&](BatchRange piece) {
+                return directions.sweep_others(piece, sweep, [&](BatchRange some) {
+                    return others_of(stage(), some).sweep(sweep, stage().cause);
+                });
+            };
+            const auto sweep_others = [&] {
+                residual =
+                    std::max(residual, at_work.largest(batches.others, kManifoldPoints, others));
+            };
+            if (!sweep.backward) sweep_others();
             double of_round = 0;
             if (!sweep.backward) of_round = at_work.largest(batches.round, 1, round);
             residual =
                 std::max(residual, at_work.largest(batches.general, kManifoldPoints, general));
             if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
             residual = std::max(residual, of_round);
+            if (sweep.backward) sweep_others();
         });
     return residual;
 }
@@ -181,6 +204,7 @@ double ColouredRows<Threads>::energy() const {
     });
     double energy = 0;
     for (const BodySums& piece : sums) energy += piece[0];
+    for_others([&](const auto& others) { energy += others.twice_give(); });
     return energy;
 }
 
@@ -197,8 +221,13 @@ double ColouredRows<Threads>::work() const {
         [&](BatchRange all) {
             for (std::uint32_t i = all.begin; i < all.end; ++i)
                 work += load_work_of_general(stage(), i);
-        });
-    return stage().mass_unit * work;
+        },
+        [](BatchRange) {});
+    double of_others = 0;
+    for_others([&](const auto& others) {
+        others.for_all([&](const Constraint& c) { of_others -= c.impulse.dot(c.aim); });
+    });
+    return stage().mass_unit * work + of_others;
 }
 
 template <class Threads>
@@ -242,7 +271,10 @@ template <class Threads>
 void ColouredRows<Threads>::keep() {
     for_all_rows(
         island_, threads_, [&](BatchRange some) { keep_round(stage(), some); },
-        [&](BatchRange some) { keep_general(stage(), some); });
+        [&](BatchRange some) { keep_general(stage(), some); },
+        [&](BatchRange some) {
+            if (stage().cause == Cause::kLoad) others_of(stage(), some).keep();
+        });
 }
 
 template <class Threads>

@@ -174,6 +174,12 @@ void put_columns(const BivectorMap& map, double factor, BodyInertia& to) {
     return product(change, momentum_of(coloured, body, change));
 }
 
+template <class Visit>
+void visit_others(const ColouredStage& stage, BatchRange some, const Visit& visit) {
+    for (std::uint32_t i = some.begin; i < some.end; ++i)
+        visit(stage.step.constraints[stage.step.coloured.others[i]], i);
+}
+
 }  // namespace
 
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
@@ -211,6 +217,13 @@ void begin_warm_start_general(const ColouredStage& stage, BatchRange batches) {
     visit_general(stage.step.coloured, batches, begin_at_none);
 }
 
+void begin_warm_start_others(const ColouredStage& stage, BatchRange some) {
+    visit_others(stage, some, [](Constraint& c, std::uint32_t) {
+        c.last_impulse.setZero(c.size);
+        c.direction.setZero(c.size);
+    });
+}
+
 void take_warm_start(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
@@ -233,6 +246,13 @@ void begin_round_directions(const ColouredStage& stage, BatchRange batches) {
 
 void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
     visit_general(stage.step.coloured, batches, begin);
+}
+
+void begin_others_directions(const ColouredStage& stage, BatchRange some) {
+    visit_others(stage, some, [](Constraint& c, std::uint32_t) {
+        c.last_impulse = c.impulse;
+        c.direction.setZero(c.size);
+    });
 }
 
 BodySums weigh_step(const ColouredStage& stage, Range bodies) {
@@ -269,6 +289,14 @@ void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
         coloured.general_work[i] = work_of_general(coloured, i).sums();
 }
 
+void weigh_others_step(const ColouredStage& stage, BatchRange some) {
+    visit_others(stage, some, [&](const Constraint& c, std::uint32_t i) {
+        const double unit = 1 / stage.mass_unit;
+        stage.step.coloured.others_work[i] = {unit * (c.impulse - c.last_impulse).dot(c.aim),
+                                              -unit * c.impulse.dot(c.aim)};
+    });
+}
+
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried) {
     ColouredIslands& coloured = stage.step.coloured;
     Double4 twice_energy{};
@@ -298,6 +326,14 @@ void go_along_round(const ColouredStage& stage, BatchRange batches, float carrie
 
 void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length) {
     visit_general(stage.step.coloured, batches, go(carried, length));
+}
+
+void go_along_others(const ColouredStage& stage, BatchRange some, float carried, float length) {
+    visit_others(stage, some, [&](Constraint& c, std::uint32_t) {
+        c.direction = (c.impulse - c.last_impulse) + carried * c.direction;
+        c.impulse = c.last_impulse + length * c.direction;
+        c.last_impulse = c.impulse;
+    });
 }
 
 }  // namespace tesserae

@@ -23,10 +23,10 @@ namespace tesserae {
 // The start is after the warm start has acted: the warm start and gravity do much more than what is
 // left to solve, and slopes would be made of its rounding, so that walls sway.
 
-/// Returns whether a pair of bodies allows conjugate directions; an island has them if all of its
-/// pairs do. Friction must be at most kMostConjugateFriction, or what a sweep changes may grow.
-/// There must be no rolling friction: bodies that roll have all of it that is allowed, so that no
-/// direction leads anywhere.
+/// Returns whether a pair of bodies in contact allows conjugate directions; an island has them if
+/// all of its pairs do, and no constraint gives way. Friction must be at most
+/// kMostConjugateFriction, or what a sweep changes may grow. There must be no rolling friction:
+/// bodies that roll have all of it that is allowed, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 
 /// Returns two energies of the bodies: of the changes by the warm start, and of those by gravity.
@@ -34,6 +34,7 @@ BodySums weigh_warm_start(const ColouredStage& stage, Range bodies);
 /// Prepares the rows so that the next weighing counts the warm start as one step from no impulses.
 void begin_warm_start_round(const ColouredStage& stage, BatchRange batches);
 void begin_warm_start_general(const ColouredStage& stage, BatchRange batches);
+void begin_warm_start_others(const ColouredStage& stage, BatchRange some);
 
 /// Moves the warm start from the bodies' changes to a record of its own. The changes that remain
 /// are small, and so is their rounding, from which directions would grow. Call
@@ -45,13 +46,15 @@ void take_warm_start(const ColouredStage& stage, Range bodies);
 void begin_directions(const ColouredStage& stage, Range bodies);
 void begin_round_directions(const ColouredStage& stage, BatchRange batches);
 void begin_general_directions(const ColouredStage& stage, BatchRange batches);
+void begin_others_directions(const ColouredStage& stage, BatchRange some);
 
 /// Weighs a pair of sweeps once it has ended. Returns the bodies' part of r.z, r.p_last and the
-/// energy; the functions for rows write each batch's part of r.z and the energy to round_work and
-/// general_work.
+/// energy; the functions for rows write each batch's part of r.z and the energy to round_work,
+/// general_work and others_work.
 BodySums weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);
+void weigh_others_step(const ColouredStage& stage, BatchRange some);
 
 /// Finds the bodies' part of the new direction.
 /// @param carried   b
@@ -63,5 +66,6 @@ BodySums find_direction(const ColouredStage& stage, Range bodies, float carried)
 void go_along(const ColouredStage& stage, Range bodies, float length);
 void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length);
 void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length);
+void go_along_others(const ColouredStage& stage, BatchRange some, float carried, float length);
 
 }  // namespace tesserae

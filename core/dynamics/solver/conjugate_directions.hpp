@@ -26,7 +26,8 @@ class ConjugateDirections {
         rounding_ = kFloatStep * kFloatStep * warm_start_;
         for_all_rows(
             island, threads, [&](BatchRange some) { take_warm_start_round(stage, some); },
-            [&](BatchRange some) { take_warm_start_general(stage, some); });
+            [&](BatchRange some) { take_warm_start_general(stage, some); },
+            [&](BatchRange some) { others_of(stage, some).take_warm_start(); });
         for_bodies([](auto... of) { add_changes(of...); });
         for_bodies([](auto... of) { take_warm_start(of...); });
         for_bodies([](auto... of) { begin_directions(of...); });
@@ -102,6 +103,16 @@ class ConjugateDirections {
             return left;
         });
     }
+    /// Sweeps constraints that are no contacts, with their part of the directions.
+    template <class Work>
+    double sweep_others(BatchRange some, Sweep sweep, const Work& work) const {
+        const ColouredStage& stage = island_.stage();
+        if (sweep.backward && holds_) go_along_others(stage, some, carried_, length_);
+        if (sweep.backward && !holds_) begin_others_directions(stage, some);
+        const double left = work(some);
+        if (!sweep.backward) weigh_others_step(stage, some);
+        return left;
+    }
 
   private:
     /// The relative change that counts as float's rounding, as a part of the warm start or of all
@@ -121,6 +132,10 @@ class ConjugateDirections {
             [&](BatchRange some) {
                 begin_warm_start_general(stage, some);
                 weigh_general_step(stage, some);
+            },
+            [&](BatchRange some) {
+                begin_warm_start_others(stage, some);
+                weigh_others_step(stage, some);
             });
         const double part = LoadWork{-work()[0], 2 * warm_start_}.best_part();
         leave_part_of_load(island_, threads_, part);
@@ -156,8 +171,8 @@ class ConjugateDirections {
         });
         return sums;
     }
-    /// Returns the sums of round_work and general_work. They are added in the order of the batches
-    /// for any number of threads.
+    /// Returns the sums of round_work, general_work and others_work. They are added in the order of
+    /// the batches for any number of threads.
     std::array<double, 2> work() const {
         const ColouredIslands& coloured = island_.stage().step.coloured;
         std::array<double, 2> sums = {};
@@ -169,6 +184,7 @@ class ConjugateDirections {
                             [&](const ColourBatches& batches, const auto&, LaneCount) {
                                 add(coloured.round_work, batches.round);
                                 add(coloured.general_work, batches.general);
+                                add(coloured.others_work, batches.others);
                             });
         return sums;
     }
@@ -194,6 +210,10 @@ struct NoDirections {
     template <class Work>
     double sweep_general(BatchRange batches, Sweep, const Work& work) const {
         return work(batches);
+    }
+    template <class Work>
+    double sweep_others(BatchRange some, Sweep, const Work& work) const {
+        return work(some);
     }
 };
 

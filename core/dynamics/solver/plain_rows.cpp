@@ -101,14 +101,19 @@ void PlainRows::for_each_row(const Visit& visit) const {
 }
 
 void PlainRows::list_bodies() {
-    const std::size_t place = 2 * step_.islands.first_row[island_];
+    const Islands& islands = step_.islands;
+    const std::size_t place = 2 * (islands.first_row[island_] + islands.first_constraint[island_]);
     BodyId* const first = &step_.bodies_of_rows[place];
     BodyId* end = first;
-    for (const std::uint32_t n : step_.islands.runs_in(island_)) {
-        const ContactList::Run run = step_.contacts.nth_run(n);
-        for (const BodyId id : {run.a, run.b})
+    const auto list = [&](BodyId a, BodyId b) {
+        for (const BodyId id : {a, b})
             if (simulation_.type_of(id).movable) *end++ = id;
+    };
+    for (const std::uint32_t n : islands.runs_in(island_)) {
+        const ContactList::Run run = step_.contacts.nth_run(n);
+        list(run.a, run.b);
     }
+    others_.for_all([&](const Constraint& constraint) { list(constraint.a, constraint.b); });
     std::sort(first, end);
     bodies_ = {first, std::unique(first, end)};
     motions_ = {&step_.motions_of_rows[place], bodies_.size()};
@@ -164,7 +169,8 @@ void PlainRows::start(Cause cause) {
     else
         restore_motions();
     make_rows();
-    if (cause == Cause::kLoad) apply_part(1);
+    others_.start(cause);
+    if (cause == Cause::kLoad) apply_part_of_contacts(1);
 }
 
 /// @return the largest velocity_left() if it is measured, else 0
@@ -195,9 +201,14 @@ double PlainRows::sweep(Sweep sweep) {
 
 double PlainRows::iterate(Pass pass, const Effort& effort) {
     const Needs& needs = simulation_.needs;
-    return tesserae::iterate(pass, effort, [&](Sweep one) {
+    const auto sweep_contacts = [&](Sweep one) {
         if (needs.rolling) return sweep<true, true>(one);
         return needs.turning ? sweep<true, false>(one) : sweep<false, false>(one);
+    };
+    return tesserae::iterate(pass, effort, [&](Sweep one) {
+        const double forward = one.backward ? 0 : others_.sweep(one, cause_);
+        const double of_contacts = sweep_contacts(one);
+        return std::max({of_contacts, forward, one.backward ? others_.sweep(one, cause_) : 0});
     });
 }
 
@@ -209,7 +220,7 @@ void PlainRows::apply_impulse(const ContactRow& row, const Vec4& impulse) {
 }
 
 /// Of the rows' impulses.
-void PlainRows::apply_part(double part) {
+void PlainRows::apply_part_of_contacts(double part) {
     for (const ContactRow& row : rows()) {
         apply_impulse(row, part * (row.normal_impulse * row.normal + row.tangent_impulse));
         if (simulation_.needs.rolling)
@@ -220,7 +231,7 @@ void PlainRows::apply_part(double part) {
 
 /// What the rows' impulses times their velocities are, less those times the targets.
 double PlainRows::work() const {
-    double sum = 0;
+    double sum = others_.work();
     for (const ContactRow& row : rows()) {
         const Vec4 v =
             relative_velocity(step_, row.a, row.r_a, row.b, row.r_b, simulation_.needs.turning);
@@ -247,11 +258,13 @@ LoadWork PlainRows::load() {
     swap_motions();
     const double before = work();
     swap_motions();
-    return {before, after - before};
+    return {before, after - before + others_.twice_give()};
 }
 
 void PlainRows::leave_part(double part) {
-    apply_part(part - 1);
+    apply_part_of_contacts(part - 1);
+    others_.apply_part(part - 1);
+    others_.leave_part(part);
     for (ContactRow& row : rows()) {
         row.normal_impulse *= part;
         row.tangent_impulse *= part;
@@ -286,6 +299,7 @@ void PlainRows::leave_part_of_restitution(double part) {
 }
 
 void PlainRows::keep() {
+    if (cause_ == Cause::kLoad) others_.keep();
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         if (cause_ == Cause::kImpact) {
             step_.hit[contact] = row.normal_impulse > 0;
@@ -316,6 +330,7 @@ void PlainRows::end_correction() {
 void PlainRows::take_correction_back() {
     const bool straight = step_.corrected[island_] == Correction::kStraight;
     if (straight) keep_motions();
+    others_.take_correction_back();
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         const ContactImpulse& load = step_.impulses[contact];
         apply_impulse(row, (load.normal - row.normal_impulse) * row.normal +

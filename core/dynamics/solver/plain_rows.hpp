@@ -3,18 +3,23 @@
 #include <array>
 #include <span>
 
+#include "core/dynamics/solver/constraint_rows.hpp"
 #include "core/dynamics/solver/impact.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
 
-/// The IslandRows that are solved one by one, in double. Every impulse changes the bodies'
-/// velocities at once. Source: E. Catto, "Iterative dynamics with temporal coherence", 2005; here
-/// friction is a block of three directions instead of separate ones.
+/// The IslandRows that are solved one by one, in double: contacts, and before them all other
+/// constraints. Every impulse changes the bodies' velocities at once. Source: E. Catto, "Iterative
+/// dynamics with temporal coherence", 2005; here friction is a block of three directions instead of
+/// separate ones.
 class PlainRows {
   public:
     PlainRows(const Simulation& simulation, StepData& step, std::size_t island)
-        : simulation_(simulation), step_(step), island_(island) {}
+        : simulation_(simulation),
+          step_(step),
+          island_(island),
+          others_(simulation, step, step.islands.constraints_in(island)) {}
 
     const Simulation& simulation() const { return simulation_; }
     StepData& step() const { return step_; }
@@ -40,7 +45,8 @@ class PlainRows {
 
   private:
     std::span<ContactRow> rows() const {
-        return {&step_.rows[step_.islands.first_row[island_]], step_.islands.contacts[island_]};
+        return {step_.rows.data() + step_.islands.first_row[island_],
+                step_.islands.contacts[island_]};
     }
     RollingRow& rolling_row_of(const ContactRow& row) const {
         return step_.rolling_rows[static_cast<std::size_t>(&row - step_.rows.data())];
@@ -54,7 +60,7 @@ class PlainRows {
     void swap_motions();
     void make_rows();
     void apply_impulse(const ContactRow& row, const Vec4& impulse);
-    void apply_part(double part);
+    void apply_part_of_contacts(double part);
     double work() const;
     template <double ContactTargets::*kTarget, bool kTurning, bool kFriction, bool kRolling>
     double sweep_rows(Sweep sweep);
@@ -64,6 +70,7 @@ class PlainRows {
     const Simulation& simulation_;
     StepData& step_;
     std::size_t island_;
+    ConstraintRows<MotionOfState> others_;  ///< the constraints that are no contacts
     Cause cause_ = Cause::kLoad;
     bool friction_ = true;
     std::span<const BodyId> bodies_;  ///< the movable ones, each once

@@ -171,7 +171,7 @@ void solve_load(Rows& rows) {
     if (step.corrected[island] != Correction::kNone) {
         rows.begin_correction();
         rows.iterate(Pass::kCorrection,
-                     effort_of_correction(simulation, step.islands.contacts[island]));
+                     effort_of_correction(simulation, step.islands.size_of(island)));
         rows.end_correction();
     }
     rows.add_changes();

@@ -376,6 +376,7 @@ void StaticLoad::keep() const {
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island) {
     if (!may_take_more(simulation.settings) || simulation.settings.gravity.isZero(0)) return;
     if (!step.islands.held[island] || step.was_hit[island]) return;
+    if (!step.islands.constraints_in(island).empty()) return;
     thread_local StaticLoad load;
     load.begin(simulation, step, island);
     if (!load.list_bodies() || !load.couple()) return;

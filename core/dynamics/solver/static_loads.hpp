@@ -17,8 +17,8 @@ namespace tesserae {
 /// contacts only push and friction obeys Coulomb's law, as with sweeps.
 ///
 /// It does nothing for an island that takes too much work (kStaticWork: walls, heaps), has rolling
-/// friction, is jammed (kPartedWeight), has just been hit, moves faster than gravity makes it in a
-/// sub-step or is not supported, nor with fewer `iterations` than by default.
+/// friction or joints, is jammed (kPartedWeight), has just been hit, moves faster than gravity
+/// makes it in a sub-step or is not supported, nor with fewer `iterations` than by default.
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

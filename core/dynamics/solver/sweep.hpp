@@ -54,7 +54,7 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
     Effort effort{settings.iterations, -1, 2, 0, kLeastSweeps};
     if (settings.tolerance > 0) effort.enough = settings.tolerance;
     if (!may_take_more(settings)) return effort;
-    int most = sweeps_of_few(kLoadWork, step.islands.contacts[island], kMostLoadSweeps);
+    int most = sweeps_of_few(kLoadWork, step.islands.size_of(island), kMostLoadSweeps);
     // An odd number begins with a sweep forward, before there are directions. They then start
     // nearer to the load, and fewer towers that start with gaps fall.
     if (step.islands.is_coloured(island)) most = (most - 1) | 1;

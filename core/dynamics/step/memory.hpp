@@ -10,6 +10,7 @@
 #include "core/algebra/rotor.hpp"
 #include "core/contact/manifold.hpp"
 #include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/constraints/wrench.hpp"
 #include "core/dynamics/step/kept_impulses.hpp"
 
 namespace tesserae {
@@ -49,6 +50,7 @@ struct StepMemory {
     /// The angular impulse against rolling and twisting for each of `impulses`, on b, world [N m
     /// s]; empty where there is no rolling friction.
     std::vector<Bivector> angular_impulses;
+    std::vector<Wrench> joint_impulses;  ///< of every joint; its parts have either sign
     /// For every body the lowest body of the island in which it sleeps, or kAwake; empty where
     /// sleeping is off.
     std::vector<BodyId> asleep;

@@ -43,7 +43,8 @@ LeftFiniteRange::LeftFiniteRange(BodyId id, double t)
       body(id),
       time(t) {}
 
-Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
+Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
+                           std::vector<Joint> joints) {
     const std::size_t count = bodies.size();
     if (bodies.position.size() != count || bodies.rotor.size() != count ||
         bodies.velocity.size() != count || bodies.angular_velocity.size() != count)
@@ -57,7 +58,11 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings) {
             throw InputError(fmt::format("bodies: type {} of {}", type, bodies.types.size()));
 
     Simulation simulation;
-    simulation.types = type_properties(bodies);
+    simulation.joints = make_joints(std::move(joints), bodies);
+    std::vector<BodyId> jointed;
+    for (const Joint& joint : simulation.joints.all)
+        jointed.insert(jointed.end(), {joint.a, joint.b});
+    simulation.types = type_properties(bodies, jointed);
     simulation.floats = float_range(simulation.types);
     simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
@@ -73,6 +78,8 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.h = dt / simulation.settings.substeps;
     step.kick = step.h * simulation.settings.gravity.norm();
     step.substep = 0;
+    step.joint_impulses = simulation.memory.joint_impulses;
+    step.joint_impulses.resize(simulation.joints.all.size());
     step.asleep = simulation.memory.asleep;
     if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);
     step.position.resize(count);
@@ -209,6 +216,7 @@ StepReport commit_step(Simulation& simulation, StepData& step) {
     if (simulation.settings.sleeping) fall_asleep(simulation, step);
     std::swap(memory.asleep, step.asleep);
     std::swap(memory.kept, step.kept);
+    std::swap(memory.joint_impulses, step.joint_impulses);
     std::swap(simulation.bodies.position, step.position);
     std::swap(simulation.bodies.rotor, step.rotor);
     std::swap(simulation.bodies.velocity, step.velocity);

@@ -16,8 +16,9 @@ struct LeftFiniteRange : RunError {
 
 /// Checks the bodies and computes what every step needs.
 /// @throws InputError   a pair of shapes that can meet has no contacts yet; arrays of different
-///                      lengths; 2^32 bodies or more
-Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings);
+///                      lengths; 2^32 bodies or more; see make_joints()
+Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
+                           std::vector<Joint> joints = {});
 
 /// Sizes the step's arrays of bodies.
 /// @throws InputError   dt is not finite or not > 0

@@ -10,6 +10,8 @@
 #include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/bodies/needs.hpp"
 #include "core/dynamics/bodies/type_properties.hpp"
+#include "core/dynamics/constraints/constraint.hpp"
+#include "core/dynamics/constraints/joint.hpp"
 #include "core/dynamics/contacts/contact_list.hpp"
 #include "core/dynamics/solver/kernels/coloured_islands.hpp"
 #include "core/dynamics/step/memory.hpp"
@@ -37,8 +39,9 @@ struct BodyPair {
     friend auto operator<=>(const BodyPair&, const BodyPair&) = default;
 };
 
-/// The islands: groups of contacts that share movable bodies, in the order of their lowest movable
-/// body. Island k has the runs of contacts runs[first[k]] to runs[first[k + 1]].
+/// The islands: groups of contacts and other constraints that share movable bodies, in the order of
+/// their lowest movable body. Island k has the runs of contacts runs[first[k]] to
+/// runs[first[k + 1]], and likewise its other constraints.
 ///
 /// Runs are in ascending order of (a, b, feature). The contacts of small islands are solved in this
 /// order, one by one. Large islands are coloured and solved in the order of their batches in
@@ -47,19 +50,30 @@ struct Islands {
     static constexpr std::uint32_t kNotColoured = std::numeric_limits<std::uint32_t>::max();
 
     std::vector<std::uint32_t> first = {0};
-    std::vector<std::uint32_t> runs;       ///< numbers of the runs in the list of contacts
-    std::vector<std::uint32_t> contacts;   ///< number of contacts of each island
-    std::vector<std::uint32_t> coloured;   ///< each island's place among the coloured ones, or
-                                           ///< kNotColoured
-    std::vector<std::uint8_t> held;        ///< of each island: contacts do not move some body
-    std::vector<std::uint8_t> conjugates;  ///< of each island: its load goes along conjugate
-                                           ///< directions, see has_conjugates()
-    std::vector<double> falling_mass;      ///< of each island: mass that gravity acts on [kg]
-    std::vector<std::uint32_t> first_row;  ///< of each island in StepData::rows, if not coloured
+    std::vector<std::uint32_t> runs;      ///< numbers of the runs in the list of contacts
+    std::vector<std::uint32_t> contacts;  ///< number of contacts of each island
+    std::vector<std::uint32_t> first_constraint = {0};
+    std::vector<std::uint32_t> constraints;  ///< numbers in StepData::constraints
+    std::vector<std::uint32_t> coloured;     ///< each island's place among the coloured ones, or
+                                             ///< kNotColoured
+    std::vector<std::uint8_t> held;          ///< of each island: contacts do not move some body
+    std::vector<std::uint8_t> conjugates;    ///< of each island: its load goes along conjugate
+                                             ///< directions, see has_conjugates()
+    std::vector<double> falling_mass;        ///< of each island: mass that gravity acts on [kg]
+    std::vector<std::uint32_t> first_row;    ///< of each island in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }
     std::span<const std::uint32_t> runs_in(std::size_t island) const {
         return std::span(runs).subspan(first[island], first[island + 1] - first[island]);
+    }
+    std::span<const std::uint32_t> constraints_in(std::size_t island) const {
+        return std::span(constraints)
+            .subspan(first_constraint[island],
+                     first_constraint[island + 1] - first_constraint[island]);
+    }
+    /// Returns the number of an island's contacts and other constraints.
+    std::uint32_t size_of(std::size_t island) const {
+        return contacts[island] + first_constraint[island + 1] - first_constraint[island];
     }
     bool is_coloured(std::size_t island) const { return coloured[island] != kNotColoured; }
 };
@@ -141,6 +155,7 @@ struct Simulation {
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
     FloatRange floats;                  ///< of all types
+    Joints joints;
     Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
@@ -164,9 +179,11 @@ struct StepData {
     /// not isotropic.
     std::vector<BivectorMap> inverse_inertia;
 
-    std::vector<Bounds> bounds;   ///< of every body
-    std::vector<BodyPair> pairs;  ///< ascending
-    ContactList contacts;         ///< ascending (a, b, feature)
+    std::vector<Bounds> bounds;           ///< of every body
+    std::vector<BodyPair> pairs;          ///< ascending
+    ContactList contacts;                 ///< ascending (a, b, feature)
+    std::vector<Constraint> constraints;  ///< all but contacts, of bodies that are awake
+    std::vector<Wrench> joint_impulses;   ///< of every joint, the last sub-step's at first
     Islands islands;
     bool rows_in_use = false;  ///< rows are in use: from build_islands() to the end of the sub-step
     std::vector<ContactRow> rows;          ///< of islands that are not coloured
@@ -193,7 +210,8 @@ struct StepData {
     std::vector<Bivector> merged_angular;
     std::vector<BodyId> lowest_of_island, next_asleep;
     std::vector<ImpactMotion> impact_motion;  ///< of every body, where there is restitution
-    // Two places for each of `rows`: an island's bodies, and their motion before its impulses.
+    // Two places for each of `rows` and `constraints`: an island's bodies, and their motion before
+    // its impulses.
     std::vector<BodyId> bodies_of_rows;
     std::vector<BodyMotion> motions_of_rows;
     std::vector<std::uint8_t> has_rows;  ///< of every island: its rows are made
@@ -207,6 +225,7 @@ inline void release_rows(StepData& step) {
     step.coloured = {};
     std::vector<ContactRow>().swap(step.rows);
     std::vector<RollingRow>().swap(step.rolling_rows);
+    std::vector<Constraint>().swap(step.constraints);
 }
 
 /// Returns the key by which contacts and their impulses are in ascending order.

@@ -168,8 +168,9 @@ struct GeneralRolling {
 struct BatchRange {
     std::uint32_t begin, end;
 };
+/// The batches of one colour, and its constraints that are no contacts.
 struct ColourBatches {
-    BatchRange round, general;
+    BatchRange round, general, others;
 };
 
 /// The coloured islands of a sub-step, one behind the other: their bodies, their batches in order
@@ -184,6 +185,8 @@ struct ColouredIslands {
     std::vector<BodyId> bodies;
     std::vector<ColourBatches> colours;
     std::vector<Batch> round, general;
+    std::vector<std::uint32_t> others;  ///< constraints in order of colours: numbers in
+                                        ///< StepData::constraints
     std::uint32_t general_rows = 0, point_responses = 0;  ///< of `general`, in all
 
     std::vector<BodyChange> changes;  ///< of `bodies`
@@ -196,6 +199,7 @@ struct ColouredIslands {
     RowImpulses<4, RoughEight> round_direction;
     RowImpulses<3, RoughEight> general_direction;
     std::vector<std::array<double, 2>> round_work, general_work;  ///< sums of each batch
+    std::vector<std::array<double, 2>> others_work;               ///< likewise, of each of `others`
     // Inertias of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions

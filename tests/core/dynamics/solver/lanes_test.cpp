@@ -23,10 +23,10 @@ std::array<int, kManifoldPoints + 1> count_twos(const ColouredIslands& coloured)
             return 0;
         });
     };
-    for (const auto& [round, general] :
+    for (const ColourBatches& colour :
          std::span(coloured.colours).first(coloured.colours.size() - 1)) {
-        count(coloured.round, round);
-        count(coloured.general, general);
+        count(coloured.round, colour.round);
+        count(coloured.general, colour.general);
     }
     return twos;
 }
