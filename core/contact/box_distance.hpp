@@ -23,7 +23,7 @@ struct BoxWitness {
 /// The error of a distance is at most this, in units, usual 2e-9. Nearly touching boxes may have
 /// features for which rounding hides a turn of b - a by 1e-19/distance. The error is that turn
 /// times up to eight sides of 4 units, and no more than the distance. At distances of 1e-4 and more
-/// it is below 1e-14.
+/// it is below 4e-14.
 constexpr double kDistanceError = 2e-9;
 
 /// Returns the closest points of two boxes. The least |b - a| over both boxes is a box-constrained

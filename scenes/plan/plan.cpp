@@ -69,6 +69,11 @@ bool any_motion(const Scene& scene) {
     return false;
 }
 
+bool any_fits_floats(const std::vector<TypeProperties>& types) {
+    return std::any_of(types.begin(), types.end(),
+                       [](const TypeProperties& type) { return type.movable && type.fits_floats; });
+}
+
 /// What the solver does beyond its simplest: one sub-step a step, no sleeping.
 void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits_floats,
                    Plan& plan) {
@@ -84,7 +89,7 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                 fmt::format("islands of {} contacts or more, eight contacts at a time in float; "
                             "smaller ones one by one",
                             kColouredFrom),
-                "masses or sizes are too far apart for float: contacts one by one");
+                "no body's size fits in floats: contacts one by one");
     const std::string until = physics.tolerance > 0
                                   ? fmt::format("at most {} iterations each, until {} m/s are left",
                                                 physics.iterations, physics.tolerance)
@@ -115,7 +120,7 @@ void decide_physics(const Scene& scene, Plan& plan) {
     if (plan.movable_bodies == 0)
         plan.decide("contacts", false, "", "no body can be moved by them");
     else
-        decide_solver(*scene.physics, needs, float_range(types).fits, plan);
+        decide_solver(*scene.physics, needs, any_fits_floats(types), plan);
 }
 
 /// What hulls take, of which equal shapes share one.

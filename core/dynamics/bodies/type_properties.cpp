@@ -25,6 +25,11 @@ Bivector at_least(double least, const Bivector& b) {
             std::max(b.yz, least), std::max(b.yw, least), std::max(b.zw, least)};
 }
 
+double slenderness(const Bivector& b) {
+    const auto [least, most] = std::minmax({b.xy, b.xz, b.xw, b.yz, b.yw, b.zw});
+    return least > 0 ? most / least : 1;
+}
+
 TypeProperties properties_of(const BodyType& type, bool jointed) {
     TypeProperties p;
     p.friction = type.friction;
@@ -59,18 +64,14 @@ TypeProperties properties_of(const BodyType& type, bool jointed) {
     const double first = p.inverse_inertia.xy;
     p.isotropic = p.inverse_inertia == Bivector{first, first, first, first, first, first};
     p.round = !p.movable || (p.arm == 0 && p.isotropic);
+    p.fits_floats =
+        !p.movable || (p.radius > 1e-9 && p.radius < 1e9 && slenderness(p.inverse_inertia) <= 1e5);
     return p;
 }
 
 /// Applies an operator that is diagonal in a frame.
 Bivector apply(const Bivector& diagonal, const Rotor& rotor, const Bivector& b) {
     return rotate(rotor, scaled(diagonal, rotate(reverse(rotor), b)));
-}
-
-double slenderness(const TypeProperties& type) {
-    const Bivector& b = type.inverse_inertia;
-    const auto [least, most] = std::minmax({b.xy, b.xz, b.xw, b.yz, b.yw, b.zw});
-    return least > 0 ? most / least : 1;
 }
 
 }  // namespace
@@ -83,19 +84,6 @@ std::vector<TypeProperties> type_properties(const Bodies& bodies, std::span<cons
     for (std::size_t i = 0; i < bodies.types.size(); ++i)
         all.push_back(properties_of(bodies.types[i], of_jointed[i]));
     return all;
-}
-
-FloatRange float_range(std::span<const TypeProperties> types) {
-    FloatRange range;
-    int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
-    for (const TypeProperties& type : types) {
-        if (!type.movable) continue;
-        range.fits &= type.radius > 1e-9 && type.radius < 1e9 && slenderness(type) <= 1e5;
-        const int exponent = std::ilogb(type.mass);
-        least = std::min(least, exponent), most = std::max(most, exponent);
-    }
-    range.fits &= most < least || most - least <= 60;
-    return range;
 }
 
 Bivector angular_response(const TypeProperties& type, const Rotor& rotor, const Bivector& impulse) {

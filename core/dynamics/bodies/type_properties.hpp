@@ -32,6 +32,10 @@ struct TypeProperties {
     double arm = 0;  ///< greatest surface speed towards another body per angular speed [m]; 0 for a
                      ///< hypersphere
     double slop = 0;  ///< allowed overlap [m]; infinite if unbounded
+    /// Its numbers fit in floats, in which coloured islands are solved: its bounding radius is
+    /// between 1e-9 and 1e9 m, its slenderness at most 1e5. The slenderness is the largest inverse
+    /// inertia over the least, of those that contacts act by; 1 if contacts do not turn it.
+    bool fits_floats = true;
     double friction = 0;
     double rolling_friction = 0;  ///< [m]
     double restitution = 0;
@@ -41,17 +45,6 @@ struct TypeProperties {
 /// @param jointed   bodies that have joints
 std::vector<TypeProperties> type_properties(const Bodies& bodies,
                                             std::span<const BodyId> jointed = {});
-
-/// The range of a scene's masses and sizes, for islands that are solved in float.
-struct FloatRange {
-    /// True if products of masses and sizes fit in a float: masses within a factor of 2^60,
-    /// bounding radii between 1e-9 and 1e9 m, slenderness at most 1e5. Otherwise islands of any
-    /// size are solved in double. A body's slenderness is its largest inverse inertia over its
-    /// least, of those that contacts act by; 1 if contacts do not turn it.
-    bool fits = true;
-};
-/// Returns the float range of all types.
-FloatRange float_range(std::span<const TypeProperties> types);
 
 /// Returns the rotor from a type's principal axes to the world.
 inline Rotor principal_rotor(const TypeProperties& type, const Rotor& rotor) {

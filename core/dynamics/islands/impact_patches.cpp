@@ -120,6 +120,7 @@ void ImpactPatches::add_island(StepData& step, std::span<const Pair> pairs) {
     islands.contacts.push_back(contacts);
     islands.coloured.push_back(Islands::kNotColoured);
     islands.held.push_back(1);
+    islands.direct.push_back(0);
     islands.conjugates.push_back(0);
     islands.falling_mass.push_back(0);
     islands.first_row.push_back(static_cast<std::uint32_t>(rows_));
@@ -199,7 +200,7 @@ bool ImpactPatches::end(const Simulation& simulation, StepData& step) {
     islands.first.resize(islands_ + 1);
     islands.first_constraint.resize(islands_ + 1);
     const auto take_back = [&](auto&... lists) { (lists.resize(islands_), ...); };
-    take_back(islands.contacts, islands.coloured, islands.held, islands.conjugates,
+    take_back(islands.contacts, islands.coloured, islands.held, islands.direct, islands.conjugates,
               islands.falling_mass, islands.first_row, step.residual, step.has_rows, step.was_hit,
               step.corrected);
     return remain;

@@ -1,6 +1,7 @@
 #include "core/dynamics/islands/islands.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,10 @@ namespace {
 
 /// The number of a body that is in no island.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// The range of masses of an island, as a power of 2, up to which their products with sizes fit in
+/// floats.
+constexpr int kMostExponents = 60;
 
 }  // namespace
 
@@ -34,7 +39,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     colouring_.begin(simulation, step);
     std::uint32_t coloured = 0, rows = 0;
     for (std::size_t island = 0; island < islands.size(); ++island) {
-        if (simulation.floats.fits && is_coloured(islands, island)) {
+        if (!islands.direct[island] && is_coloured(islands, island)) {
             colouring_.add(simulation, step, island);
             islands.coloured[island] = coloured++;
         } else {
@@ -51,6 +56,8 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
 }
 
 bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {
+    const FloatRange& floats = floats_[island];
+    if (!floats.fits || floats.most - floats.least > kMostExponents) return false;
     const std::uint32_t size = islands.size_of(island);
     if (!islands.held[island]) return size >= coloured_from_.free;
     const bool unequal =
@@ -84,11 +91,20 @@ void IslandBuilder::weigh_islands(const Simulation& simulation, Islands& islands
     const std::size_t count = islands.contacts.size();
     least_mass_.assign(count, std::numeric_limits<double>::infinity());
     most_mass_.assign(count, 0);
+    floats_.assign(count, {});
+    bodies_.assign(count, 0);
     islands.falling_mass.assign(count, 0);
     for (BodyId id = 0; id < parent_.size(); ++id) {
         const TypeProperties& type = simulation.type_of(id);
         const std::uint32_t island = number_[root_of(id)];
-        if (island == kNone || !(type.inverse_mass > 0)) continue;
+        if (island == kNone || !type.movable) continue;
+        ++bodies_[island];
+        FloatRange& floats = floats_[island];
+        const int exponent = std::ilogb(type.mass);
+        floats.fits &= type.fits_floats;
+        floats.least = std::min(floats.least, exponent);
+        floats.most = std::max(floats.most, exponent);
+        if (!(type.inverse_mass > 0)) continue;
         least_mass_[island] = std::min(least_mass_[island], type.mass);
         most_mass_[island] = std::max(most_mass_[island], type.mass);
         if (type.falls) islands.falling_mass[island] += type.mass;
@@ -142,6 +158,10 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     };
     sort(0, runs, islands.first, islands.runs);
     sort(runs, step.constraints.size(), islands.first_constraint, islands.constraints);
+    islands.direct.assign(count, 0);
+    for (std::uint32_t island = 0; island < count; ++island)
+        islands.direct[island] =
+            !islands.constraints_in(island).empty() && bodies_[island] <= coloured_from_.direct;
 }
 
 }  // namespace tesserae

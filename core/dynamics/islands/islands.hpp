@@ -1,7 +1,10 @@
 #pragma once
 
+#include <limits>
+
 #include "core/dynamics/constants.hpp"
 #include "core/dynamics/islands/colouring.hpp"
+#include "core/dynamics/solver/block_cholesky.hpp"
 #include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {
@@ -11,10 +14,13 @@ struct ColouredFrom {
     std::uint32_t held = kColouredFrom;      ///< if some body touches one that contacts do not move
     std::uint32_t unequal = 1;               ///< of these, if masses differ by kUnequalMasses
     std::uint32_t free = kFreeColouredFrom;  ///< if nothing holds the island
+    /// The number of bodies up to which an island with joints is not, see JointBlock.
+    std::size_t direct = BlockCholesky::kMostRows;
 
     ColouredFrom() = default;
-    ColouredFrom(std::uint32_t both)
-        : held(both), unequal(both), free(both) {}  // NOLINT: meant to convert
+    /// All islands from so many contacts on, and no JointBlock.
+    ColouredFrom(std::uint32_t both)  // NOLINT: meant to convert
+        : held(both), unequal(both), free(both), direct(0) {}
 };
 
 /// Joins the movable bodies of every contact and other constraint (union-find) and sorts these by
@@ -29,6 +35,13 @@ class IslandBuilder {
     void build(const Simulation& simulation, StepData& step);
 
   private:
+    /// Whether the numbers of an island's bodies fit in floats.
+    struct FloatRange {
+        bool fits = true;                             ///< each body's, see TypeProperties
+        int least = std::numeric_limits<int>::max();  ///< exponents of 2 of their masses
+        int most = std::numeric_limits<int>::min();
+    };
+
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
     bool is_coloured(const Islands& islands, std::size_t island) const;
@@ -42,6 +55,8 @@ class IslandBuilder {
     std::vector<BodyId> member_;
     std::vector<std::uint32_t> number_;           ///< of the island whose root the body is
     std::vector<double> least_mass_, most_mass_;  ///< of every island's bodies [kg]
+    std::vector<FloatRange> floats_;              ///< of every island's bodies
+    std::vector<std::uint32_t> bodies_;           ///< number of each island's movable bodies
     Colouring colouring_;
 };
 

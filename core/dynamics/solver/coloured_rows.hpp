@@ -10,7 +10,7 @@
 
 namespace tesserae {
 
-/// The IslandRows of a coloured island. Contacts are solved in float, eight at a time, and before
+/// The IslandRows of a coloured island. Contacts are solved in float, eight at a time, and after
 /// them, in each colour, all other constraints, one by one in double.
 /// Velocities are changes since the sub-step's start, which are added to the state at the end.
 /// Targets are relative to the start's velocities and are computed in double. So neither a body's
@@ -146,14 +146,14 @@ double ColouredRows<Threads>::sweep(Sweep sweep, const Directions& directions) {
                 residual =
                     std::max(residual, at_work.largest(batches.others, kManifoldPoints, others));
             };
-            if (!sweep.backward) sweep_others();
+            if (sweep.backward) sweep_others();
             double of_round = 0;
             if (!sweep.backward) of_round = at_work.largest(batches.round, 1, round);
             residual =
                 std::max(residual, at_work.largest(batches.general, kManifoldPoints, general));
             if (sweep.backward) of_round = at_work.largest(batches.round, 1, round);
             residual = std::max(residual, of_round);
-            if (sweep.backward) sweep_others();
+            if (!sweep.backward) sweep_others();
         });
     return residual;
 }

@@ -162,6 +162,14 @@ void PlainRows::make_rows() {
     step_.has_rows[island_] = friction_;  // without, they are not those of the contacts
 }
 
+/// Islands are solved one after the other on a thread, so that one block serves all of them.
+void PlainRows::begin_block() {
+    if (block_ || !step_.islands.direct[island_]) return;
+    thread_local JointBlock block;
+    if (block.begin(simulation_, step_, bodies_, step_.islands.constraints_in(island_)))
+        block_ = &block;
+}
+
 void PlainRows::start(Cause cause) {
     cause_ = cause;
     if (bodies_.empty())
@@ -169,8 +177,13 @@ void PlainRows::start(Cause cause) {
     else
         restore_motions();
     make_rows();
+    begin_block();
     others_.start(cause);
     if (cause == Cause::kLoad) apply_part_of_contacts(1);
+}
+
+double PlainRows::sweep_others(Sweep sweep) {
+    return block_ ? block_->sweep(simulation_, step_) : others_.sweep(sweep, cause_);
 }
 
 /// @return the largest velocity_left() if it is measured, else 0
@@ -206,9 +219,9 @@ double PlainRows::iterate(Pass pass, const Effort& effort) {
         return needs.turning ? sweep<true, false>(one) : sweep<false, false>(one);
     };
     return tesserae::iterate(pass, effort, [&](Sweep one) {
-        const double forward = one.backward ? 0 : others_.sweep(one, cause_);
+        const double before = one.backward ? sweep_others(one) : 0;
         const double of_contacts = sweep_contacts(one);
-        return std::max({of_contacts, forward, one.backward ? others_.sweep(one, cause_) : 0});
+        return std::max({before, of_contacts, one.backward ? 0 : sweep_others(one)});
     });
 }
 

@@ -5,11 +5,12 @@
 
 #include "core/dynamics/solver/constraint_rows.hpp"
 #include "core/dynamics/solver/impact.hpp"
+#include "core/dynamics/solver/joint_block.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
 
-/// The IslandRows that are solved one by one, in double: contacts, and before them all other
+/// The IslandRows that are solved one by one, in double: contacts, and after them all other
 /// constraints. Every impulse changes the bodies' velocities at once. Source: E. Catto, "Iterative
 /// dynamics with temporal coherence", 2005; here friction is a block of three directions instead of
 /// separate ones.
@@ -54,6 +55,8 @@ class PlainRows {
     template <class Visit>
     void for_each_row(const Visit& visit) const;
     void list_bodies();
+    void begin_block();
+    double sweep_others(Sweep sweep);
     void keep_motions();
     void restore_motions();
     void restore_turning();
@@ -71,6 +74,7 @@ class PlainRows {
     StepData& step_;
     std::size_t island_;
     ConstraintRows<MotionOfState> others_;  ///< the constraints that are no contacts
+    JointBlock* block_ = nullptr;           ///< of these, if they are solved as one
     Cause cause_ = Cause::kLoad;
     bool friction_ = true;
     std::span<const BodyId> bodies_;  ///< the movable ones, each once

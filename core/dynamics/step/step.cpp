@@ -63,7 +63,6 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
     for (const Joint& joint : simulation.joints.all)
         jointed.insert(jointed.end(), {joint.a, joint.b});
     simulation.types = type_properties(bodies, jointed);
-    simulation.floats = float_range(simulation.types);
     simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
     simulation.settings = settings;

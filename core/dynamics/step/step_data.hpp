@@ -57,6 +57,8 @@ struct Islands {
     std::vector<std::uint32_t> coloured;     ///< each island's place among the coloured ones, or
                                              ///< kNotColoured
     std::vector<std::uint8_t> held;          ///< of each island: contacts do not move some body
+    std::vector<std::uint8_t> direct;        ///< of each island: its joints may be solved as one,
+                                             ///< see JointBlock
     std::vector<std::uint8_t> conjugates;    ///< of each island: its load goes along conjugate
                                              ///< directions, see has_conjugates()
     std::vector<double> falling_mass;        ///< of each island: mass that gravity acts on [kg]
@@ -154,7 +156,6 @@ struct Simulation {
     StepMemory memory;
     PhysicsSettings settings;
     std::vector<TypeProperties> types;  ///< by body type
-    FloatRange floats;                  ///< of all types
     Joints joints;
     Needs needs;
 

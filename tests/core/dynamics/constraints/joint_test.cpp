@@ -48,8 +48,8 @@ double largest_error(const World& world) {
     return largest;
 }
 
-/// Small islands solved one by one, and all coloured.
-constexpr std::uint32_t kBothWays[] = {kNoneColoured, 1};
+/// Islands solved by sweeps one by one, by sweeps in colours, and with joints as one block.
+const ColouredFrom kAllWays[] = {kNoneColoured, 1, {}};
 
 /// A chain of balls along x, the first one held.
 struct Chain {
@@ -154,7 +154,7 @@ PhysicsSettings settings_of() {
     return settings;
 }
 
-double error_after(double seconds, double dt, Hanging of, std::uint32_t coloured_from) {
+double error_after(double seconds, double dt, Hanging of, const ColouredFrom& coloured_from) {
     World world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
     const int steps = static_cast<int>(std::lround(seconds / dt));
     for (int i = 0; i < steps; ++i) world.step(dt);
@@ -164,7 +164,7 @@ double error_after(double seconds, double dt, Hanging of, std::uint32_t coloured
 
 /// Of second order: half of the time step leaves a fourth of the error.
 TEST(PointJoint, SwingsAsTheEquationOfAPendulumSays) {
-    for (const std::uint32_t coloured_from : kBothWays)
+    for (const ColouredFrom& coloured_from : kAllWays)
         for (const bool flat : {true, false}) {
             std::mt19937_64 random(1);
             for (int i = 0; i < 8; ++i) {
@@ -172,14 +172,14 @@ TEST(PointJoint, SwingsAsTheEquationOfAPendulumSays) {
                 const double coarse = error_after(1, 1.0 / 240, of, coloured_from);
                 const double fine = error_after(1, 1.0 / 480, of, coloured_from);
                 EXPECT_LT(coarse, 0.02) << i;
-                EXPECT_LT(fine, 0.3 * coarse + 2e-6) << i << " " << coloured_from;
+                EXPECT_LT(fine, 0.3 * coarse + 2e-6) << i << " " << coloured_from.held;
             }
         }
 }
 
 /// Nothing is gained or lost on the whole, over a thousand swings.
 TEST(PointJoint, KeepsItsEnergy) {
-    for (const std::uint32_t coloured_from : kBothWays) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
         std::mt19937_64 random(2);
         const Hanging of = hanging(random, false);
         World world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
@@ -192,14 +192,14 @@ TEST(PointJoint, KeepsItsEnergy) {
             least = std::min(least, energy()), most = std::max(most, energy());
         }
         const double swing = of.bodies.type_of(1).mass * 10 * of.bodies.position[1].norm();
-        EXPECT_LT(most - least, 0.01 * swing) << coloured_from;
-        EXPECT_NEAR(energy(), first, 0.01 * swing) << coloured_from;
+        EXPECT_LT(most - least, 0.01 * swing) << coloured_from.held;
+        EXPECT_NEAR(energy(), first, 0.01 * swing) << coloured_from.held;
     }
 }
 
 /// Two boxes joined in flight keep their momentum, straight and turning.
 TEST(PointJoint, KeepsMomentum) {
-    for (const std::uint32_t coloured_from : kBothWays) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
         std::mt19937_64 random(3);
         for (int i = 0; i < 20; ++i) {
             Bodies bodies;
@@ -210,11 +210,11 @@ TEST(PointJoint, KeepsMomentum) {
             add(bodies, box_type({0.4, 0.4, 0.5, 0.3}, 1), on_a - on_b, random_vector(random, 1),
                 {q[2], q[3], p[1], p[0], q[1], p[3]});
             World world(make_simulation(bodies, without_gravity(), {point_joint(0, on_a, 1, on_b)}),
-                        ColouredFrom(coloured_from));
+                        coloured_from);
             const Vec4 momentum = total_momentum(world.bodies());
             const Bivector turning = total_angular_momentum(world.bodies());
             run(world, 240);
-            const double rounding = coloured_from == 1 ? 1e-5 : 1e-11;
+            const double rounding = coloured_from.held == 1 ? 1e-5 : 1e-11;
             EXPECT_LT((total_momentum(world.bodies()) - momentum).norm(), rounding) << i;
             EXPECT_LT(norm(total_angular_momentum(world.bodies()) - turning), rounding) << i;
             EXPECT_LT(largest_error(world), 2e-3) << i;
@@ -224,16 +224,16 @@ TEST(PointJoint, KeepsMomentum) {
 
 /// At rest a chain's joints are where they belong, and it falls asleep as one.
 TEST(Chain, HangsStill) {
-    for (const std::uint32_t coloured_from : kBothWays) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
         const Chain chain = chain_of(12, -Vec4::UnitY(), 3);
         PhysicsSettings settings = settings_of();
         settings.sleeping = true;
         World world(make_simulation(chain.bodies, settings, chain.joints), coloured_from);
         StepReport report;
         for (int i = 0; i < 480; ++i) report = world.step(kStep);
-        EXPECT_LT(largest_error(world), 1e-6) << coloured_from;
-        EXPECT_LT(fastest_of(world), 1e-6) << coloured_from;
-        EXPECT_EQ(report.asleep, 12u) << coloured_from;
+        EXPECT_LT(largest_error(world), 1e-6) << coloured_from.held;
+        EXPECT_LT(fastest_of(world), 1e-6) << coloured_from.held;
+        EXPECT_EQ(report.asleep, 12u) << coloured_from.held;
         // What each joint bears: all below it.
         for (std::size_t i = 0; i < 12; ++i) {
             const double weight = 10 * (14 - static_cast<double>(i)) * kStep;
@@ -263,7 +263,7 @@ TEST(Chain, WakesAsOne) {
 
 /// A swinging chain goes on with the same bits from bodies and memory as saved.
 TEST(Chain, GoesOnFromItsMemory) {
-    for (const std::uint32_t coloured_from : kBothWays) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
         const Chain chain = chain_of(8, Vec4(1, 0.2, 0.1, 0.3).normalized());
         for (const int substeps : {1, 3}) {
             PhysicsSettings settings = settings_of();
@@ -298,7 +298,7 @@ TEST(Joint, LeavesContactsOfItsBodiesOut) {
 /// on by up to 6 cm, and the joint would be torn by a part of it. It then swings round.
 TEST(Joint, IsNotTornWhereABodyIsStopped) {
     constexpr double kSpeed = 30, kFront = 3 - 0.025, kRadius = 0.1;
-    for (const std::uint32_t coloured_from : kBothWays)
+    for (const ColouredFrom& coloured_from : kAllWays)
         for (const double ahead : {0.002, 0.01, 0.02, 0.03, 0.04}) {
             Bodies bodies;
             BodyType wall = box_type({0.05, 0.3, 4, 4});
@@ -309,7 +309,7 @@ TEST(Joint, IsNotTornWhereABodyIsStopped) {
             add(bodies, sphere_type(kRadius), {x, 0.6, 0, 0}, {kSpeed, 0, 0, 0});
             World world(make_simulation(bodies, without_gravity(),
                                         {point_joint(1, {0, 0.3, 0, 0}, 2, {0, -0.3, 0, 0})}),
-                        ColouredFrom(coloured_from));
+                        coloured_from);
             double torn = 0;
             for (int i = 0; i < 4; ++i) {
                 world.step(kStep);
@@ -323,18 +323,18 @@ TEST(Joint, IsNotTornWhereABodyIsStopped) {
 
 /// A ball that hits one end of a dumbbell elastically: momentum and energy stay.
 TEST(Joint, HandsAnElasticImpactOn) {
-    for (const std::uint32_t coloured_from : kBothWays) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
         Bodies bodies;
         for (const double y : {-0.5, 0.5}) add(bodies, sphere_type(0.3, 1, 0, 1), {0, y, 0, 0});
         add(bodies, sphere_type(0.3, 2, 0, 1), {-1.5, 0.5, 0.1, -0.1}, {6, 0, 0, 0});
         World world(make_simulation(bodies, without_gravity(),
                                     {point_joint(0, 0.5 * Vec4::UnitY(), 1, -0.5 * Vec4::UnitY())}),
-                    ColouredFrom(coloured_from));
+                    coloured_from);
         const double before = energy_of(world);
         run(world, 120);
-        EXPECT_NEAR(energy_of(world), before, 0.01 * before) << coloured_from;
-        EXPECT_GT(world.bodies().velocity[1][0], 1) << coloured_from;
-        EXPECT_LT(largest_error(world), 2e-3) << coloured_from;
+        EXPECT_NEAR(energy_of(world), before, 0.01 * before) << coloured_from.held;
+        EXPECT_GT(world.bodies().velocity[1][0], 1) << coloured_from.held;
+        EXPECT_LT(largest_error(world), 2e-3) << coloured_from.held;
     }
 }
 
