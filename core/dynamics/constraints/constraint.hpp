@@ -41,13 +41,13 @@ struct Constraint {
     Vec4 r_a = Vec4::Zero(), r_b = Vec4::Zero();  ///< from the centres to the anchor [m]
     ImpulseSet set = ImpulseSet::kAll;
     double most = 0;  ///< see ImpulseSet
-    double compliance =
-        0;         ///< velocity by which a row gives way per impulse on it [1/kg, 1/(kg m^2)]
+    /// Velocity by which a row gives way per impulse on it [1/kg, 1/(kg m^2)].
+    double compliance = 0;
     int size = 0;  ///< number of rows
     std::array<Wrench, kMostRows> rows;
     RowVector bias;  ///< velocities at which a load aims [m/s, rad/s]
 
-    // What the solver keeps: see set_response() and start_constraint().
+    // What the solver keeps: see set_response() and ConstraintRows.
     RowMatrix response, mass;  ///< change of the rows' velocities by unit impulses, and its inverse
     double step_mass = 0;      ///< at most the inverse of the largest response
     RowVector aim;             ///< bias, less the velocities that the bodies' motion leaves out
@@ -72,7 +72,7 @@ Wrench wrench_of(const Constraint& constraint, const RowVector& impulses);
 /// Returns the rows' impulses nearest to a wrench that the set allows.
 RowVector impulses_of(const Constraint& constraint, const Wrench& wrench);
 
-/// Where the rows of a joint are, against where it holds them.
+/// The RowErrors tell where the rows of a joint are, against where it holds them.
 struct RowErrors {
     RowVector distance;      ///< [m, rad]
     RowVector acceleration;  ///< of this by the bodies' present turning [m/s^2, rad/s^2]
