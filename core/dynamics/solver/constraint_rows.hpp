@@ -37,7 +37,6 @@ class MotionOfChanges {
         return {assembled(v[0], v[1], v[2], v[3]), {w[0], w[1], w[2], w[3], rest[0], rest[1]}};
     }
     void add(std::uint32_t place, const BodyMotion& change) const {
-        if (place == 0) return;  // all bodies that contacts do not move
         BodyChange& record = step_.coloured.changes[place];
         const Bivector& w = change.angular_velocity;
         for (int i = 0; i < 4; ++i)
@@ -144,8 +143,9 @@ class ConstraintRows {
     }
     void apply(const Constraint& c, const RowVector& impulses) const {
         const auto [of_a, of_b] = motion_by(simulation_, step_, c, impulses);
-        motions_.add(c.place_a, of_a);
-        motions_.add(c.place_b, of_b);
+        // What contacts do not move may be in many islands, which other threads solve.
+        if (simulation_.type_of(c.a).movable) motions_.add(c.place_a, of_a);
+        if (simulation_.type_of(c.b).movable) motions_.add(c.place_b, of_b);
     }
 
     const Simulation& simulation_;

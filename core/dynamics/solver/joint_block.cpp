@@ -137,6 +137,7 @@ double JointBlock::sweep(const Simulation& simulation, StepData& step) {
             c.impulse += change;
             const auto of = tesserae::motion_by(simulation, step, c, change);
             for (const auto& [id, motion] : {std::pair(c.a, of[0]), std::pair(c.b, of[1])}) {
+                if (!simulation.type_of(id).movable) continue;  // it may be in other islands too
                 step.velocity[id] += motion.velocity;
                 step.angular_velocity[id] += motion.angular_velocity;
             }
