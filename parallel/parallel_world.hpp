@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/dynamics/world.hpp"
 
@@ -36,6 +37,9 @@ class ParallelWorld {
     const Bodies& bodies() const { return world_.bodies(); }
     const StepMemory& memory() const { return world_.memory(); }
     StepMemory& memory() { return world_.memory(); }
+    const Joints& joints() const { return world_.simulation().joints; }
+    /// See World.
+    std::span<const Wrench> joint_impulses() const { return world_.joint_impulses(); }
 
   private:
     class StageSpans;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/constraints/joint.hpp"
 #include "core/dynamics/step/settings.hpp"
 #include "render/description.hpp"
 #include "scenes/camera_motion.hpp"
@@ -24,6 +25,8 @@ struct Scene {
     Bodies bodies;                               ///< at time 0
     std::vector<render::Appearance> appearance;  ///< by body type
     std::vector<NamedBodies> names;              ///< ascending, covering all bodies
+    std::vector<Joint> joints;                   ///< as the bodies are at time 0
+    std::vector<std::string> joint_names;        ///< of each joint
     std::vector<render::Material> materials;
     render::CameraDescription camera;    ///< where no key moves it
     std::vector<CameraKey> camera_keys;  ///< ascending in time

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/dynamics/constraints/pose_joints.hpp"
 #include "core/dynamics/contacts/find_contacts.hpp"
 #include "core/dynamics/contacts/kept_manifolds.hpp"
 #include "core/dynamics/contacts/rims.hpp"
@@ -51,6 +52,8 @@ StepReport World::step(double dt) {
 }
 
 StepReport World::step(double dt, Schedule& schedule) {
+    if (simulation_.joints.broken != memory().broken)
+        set_broken(simulation_.joints, bodies(), memory().broken);
     begin_step(simulation_, step_, dt);
     for (step_.substep = 0; step_.substep < simulation_.settings.substeps; ++step_.substep) {
         advance_first_half(schedule);  // free motion to the middle, where contacts act

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/dynamics/contacts/chunked_list.hpp"
@@ -43,6 +44,9 @@ class World {
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
     StepMemory& memory() { return simulation_.memory; }
+    /// Returns what every joint's impulses were in the last step: on body b, of all sub-steps and
+    /// impacts.
+    std::span<const Wrench> joint_impulses() const { return step_.joint_sums; }
 
   private:
     class Observed;

@@ -54,6 +54,8 @@ std::string text_of(const FirstDifference& first) {
         text += fmt::format("body {} ", *first.body);
         if (!first.body_name.empty()) text += fmt::format("\"{}\" ", printable(first.body_name));
     }
+    if (first.joint)
+        text += fmt::format("joint {} \"{}\" ", *first.joint, printable(first.joint_name));
     return text + fmt::format("{}: {} in A, {} in B, {} apart", first.component, first.a, first.b,
                               first.difference);
 }
@@ -62,6 +64,9 @@ void add_trajectory(Lines& lines, const TrajectoryDifference& difference) {
     if (difference.bodies_a != difference.bodies_b)
         lines.add("bodies",
                   fmt::format("{} in A, {} in B", difference.bodies_a, difference.bodies_b));
+    if (difference.joints_a != difference.joints_b)
+        lines.add("joints",
+                  fmt::format("{} in A, {} in B", difference.joints_a, difference.joints_b));
     add_scene(lines, difference.scene, difference.motion);
     lines.add_unless_empty("steps only in A", text_of(difference.only_a));
     lines.add_unless_empty("steps only in B", text_of(difference.only_b));

@@ -78,6 +78,7 @@ class RowComparison {
     std::optional<FirstDifference> first_in(const RowPair& row);
     std::optional<FirstDifference> first_state(const RowPair& row) const;
     std::optional<FirstDifference> first_observable(const RowPair& row) const;
+    std::optional<FirstDifference> first_of_joints(const RowPair& row) const;
     bool is_same(std::size_t body, std::size_t element) const;
     StepDifference sum_up(const RowPair& row);
 
@@ -145,10 +146,30 @@ std::optional<FirstDifference> RowComparison::first_observable(const RowPair& ro
     return std::nullopt;
 }
 
+/// The first joint that differs, and its first element.
+std::optional<FirstDifference> RowComparison::first_of_joints(const RowPair& row) const {
+    const std::vector<JointDescription>& joints = a_.header().joints;
+    if (joints.empty() || joints.size() != b_.header().joints.size()) return std::nullopt;
+    const JointFacts facts_a = a_.joints(row.a), facts_b = b_.joints(row.b);
+    for (std::size_t joint = 0; joint < joints.size(); ++joint)
+        for (std::size_t e = 0; e < kJointElements.size(); ++e) {
+            const double a = joint_value(facts_a, e, joint), b = joint_value(facts_b, e, joint);
+            if (same_bits(a, b)) continue;
+            FirstDifference first = found(row);
+            first.joint = joint;
+            first.joint_name = joints[joint].name;
+            first.component = kJointElements[e].name;
+            set_values(first, a, b);
+            return first;
+        }
+    return std::nullopt;
+}
+
 std::optional<FirstDifference> RowComparison::first_in(const RowPair& row) {
     read(row);
-    const auto first = first_state(row);
-    return first ? first : first_observable(row);
+    auto first = first_state(row);
+    if (!first) first = first_observable(row);
+    return first ? first : first_of_joints(row);
 }
 
 StepDifference RowComparison::sum_up(const RowPair& row) {
@@ -174,6 +195,7 @@ StepDifference RowComparison::sum_up(const RowPair& row) {
 void RowComparison::compare(TrajectoryDifference& difference) {
     const TrajectoryHeader &a = a_.header(), &b = b_.header();
     difference.bodies_a = a.bodies, difference.bodies_b = b.bodies;
+    difference.joints_a = a.joints.size(), difference.joints_b = b.joints.size();
     difference.scene = first_difference(a.effective, b.effective);
     difference.motion = first_motion_difference(a.effective, b.effective);
     const std::vector<RowPair> pairs = match_steps(a_.steps(), b_.steps(), difference);

@@ -21,9 +21,11 @@ struct FirstDifference {
     double time = 0;  ///< of trajectory a [s]
     std::optional<std::uint64_t> body;
     std::string body_name;  ///< empty: not known
-    std::string component;  ///< "position.x", "rotor.xy", "kinetic_energy", "time"
-    std::string a, b;       ///< shortest decimals that read back as the same values
-    double difference = 0;  ///< |a - b|
+    std::optional<std::uint64_t> joint;
+    std::string joint_name;  ///< in trajectory a
+    std::string component;   ///< "position.x", "rotor.xy", "kinetic_energy", "time"
+    std::string a, b;        ///< shortest decimals that read back as the same values
+    double difference = 0;   ///< |a - b|
 };
 
 /// How far two stored states of a step are apart.
@@ -36,6 +38,7 @@ struct StepDifference {
 
 struct TrajectoryDifference {
     std::uint64_t bodies_a = 0, bodies_b = 0;  ///< if not equal, no rows are compared
+    std::uint64_t joints_a = 0, joints_b = 0;  ///< if not equal, joints are not compared
     std::string scene;                         ///< first_difference() of the effective texts
     std::string motion;                        ///< first_motion_difference() of them
     LoneSteps only_a, only_b;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numbers>
 #include <span>
 
 #include "core/dynamics/diagnostics/energy.hpp"
+#include "core/dynamics/diagnostics/joint_state.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/motion_version.hpp"
 #include "core/dynamics/step/step.hpp"
@@ -14,12 +16,21 @@
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/timeline.hpp"
+#include "scenes/trajectory/joint_datasets.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kDegreesInRadian = 180 / std::numbers::pi;
+
+/// The unit in which a trajectory tells a joint's position.
+const char* position_unit(const Joint& joint, const Bodies& bodies) {
+    const int free = free_coordinate(joint, bodies);
+    return free < 0 ? "" : is_angle(joint, free) ? "deg" : "m";
+}
 
 TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
                            std::uint64_t last_step) {
@@ -37,7 +48,32 @@ TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
     header.last_step = last_step;
     header.motion_version = kMotionVersion;
     header.described = {scene.bodies.types, scene.bodies.type, scene.names};
+    for (std::size_t i = 0; i < scene.joints.size(); ++i)
+        header.joints.push_back(
+            {scene.joint_names[i], position_unit(scene.joints[i], scene.bodies)});
+    header.joint_parts = make_joints(scene.joints, scene.bodies).parts();
     return header;
+}
+
+/// What joints are and do where bodies are.
+/// @param world   none: nothing has acted on them
+JointFacts joint_facts_of(const Scene& scene, const Bodies& bodies,
+                          const parallel::ParallelWorld* world) {
+    std::span<const Wrench> impulses;
+    if (world) impulses = world->joint_impulses();
+    JointFacts facts = room_for_joints(scene.joints.size());
+    if (world && !world->memory().broken.empty()) facts.broken = world->memory().broken;
+    for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+        const Joint& joint = scene.joints[i];
+        const JointState state = state_of(joint, bodies, impulses.empty() ? Wrench{} : impulses[i]);
+        facts.impulse[i] = state.impulse;
+        facts.angular_impulse[i] = state.angular_impulse;
+        facts.error[i] = state.error;
+        facts.angular_error[i] = kDegreesInRadian * state.angular_error;
+        const int free = free_coordinate(joint, bodies);
+        facts.position[i] = (is_angle(joint, free) ? kDegreesInRadian : 1) * state.position;
+    }
+    return facts;
 }
 
 StepFacts facts_of(const Scene& scene, std::uint64_t step, const StepReport& found,
@@ -117,7 +153,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     // Where nothing moves every row is the first.
     std::optional<parallel::ParallelWorld> world;
     if (plan.moves) {
-        world.emplace(std::move(start), *scene.physics);
+        world.emplace(make_simulation(std::move(start), *scene.physics, scene.joints));
         world->memory() = std::move(memory);
         world->set_trace(trace);
     }
@@ -138,8 +174,9 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
             }
             progress.update(step + 1);
         }
-        writer.append(facts_of(scene, step, found, bodies), bodies,
-                      world ? world->memory() : memory);
+        StepFacts facts = facts_of(scene, step, found, bodies);
+        facts.joints = joint_facts_of(scene, bodies, world ? &*world : nullptr);
+        writer.append(facts, bodies, world ? world->memory() : memory);
     }
     report.last_step = step;
     report.rows = writer.rows();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/error.hpp"
@@ -68,6 +69,9 @@ std::uint64_t cube_side(std::uint64_t count) {
     while (n * n * n < count) ++n;
     return std::max<std::uint64_t>(n, 1);
 }
+
+/// Bodies that joints connect: scene files have a limited number of keys.
+constexpr std::uint64_t kMostJoined = 8000;
 
 constexpr const char* kBallText = "shape = \"hypersphere\"\nradius = 0.5\n";
 constexpr const char* kPlainBox = "shape = \"hyperbox\"\nsize = [1, 1, 1, 1]\n";
@@ -287,6 +291,88 @@ std::string pyramid(std::uint64_t bodies) {
     return text;
 }
 
+/// @param keys   of its type
+std::string joint(std::string_view type, std::string_view a, std::string_view b, const Vec4& anchor,
+                  std::string_view keys = "") {
+    const std::string other = b.empty() ? "" : fmt::format("b = \"{}\"\n", b);
+    return fmt::format("\n[[joint]]\ntype = \"{}\"\na = \"{}\"\n{}anchor = {}\n{}", type, a, other,
+                       rounded_text(anchor), keys);
+}
+
+std::string chain(std::uint64_t bodies) {
+    constexpr double kLink = 0.5;
+    const double length = kLink * static_cast<double>(bodies), height = 1 + 1.2 * length;
+    std::string text = stage("chain", "duration = 4\n", height, length) + floor_and_walls(0);
+    text += lattice({{bodies, 1, 1, 1}, {0, height, 0, 0}}, {kLink, 1, 1, 1}, 0,
+                    "name = \"joined\"\nshape = \"hypercapsule\"\nradius = 0.06\n"
+                    "height = 0.38\nrotation = { xy = 90 }\n");
+    for (std::uint64_t i = 0; i < bodies; ++i)
+        text += joint("point", fmt::format("joined.{}", i),
+                      i > 0 ? fmt::format("joined.{}", i - 1) : std::string(),
+                      {kLink * static_cast<double>(i) - 0.5 * length, height, 0, 0});
+    return text;
+}
+
+/// Planks along the lower part of a circle: a straight bridge could not bear its weight.
+std::string bridge(std::uint64_t bodies) {
+    constexpr double kPlank = 0.5, kHalfAngle = 0.6;  // [m, rad]
+    const auto count = static_cast<double>(bodies);
+    const double step = 2 * kHalfAngle / count, radius = 0.5 * kPlank / std::sin(0.5 * step);
+    const auto place = [&](double at, double far) {
+        const double angle = step * at - kHalfAngle;
+        return Vec4(far * std::sin(angle), 1.3 * radius - far * std::cos(angle), 0, 0);
+    };
+    std::string text = stage("bridge", "duration = 4\n", 0.5 * radius, radius) + floor_and_walls(0);
+    const auto name = [](std::uint64_t i) { return fmt::format("plank-{}", i); };
+    for (std::uint64_t i = 0; i < bodies; ++i) {
+        const double at = static_cast<double>(i) + 0.5;
+        const double degrees = (step * at - kHalfAngle) * 180 / std::numbers::pi;
+        text += fmt::format(
+            "\n[[body]]\nname = \"{}\"\nshape = \"hyperbox\"\nsize = [0.46, 0.1, 1, 1]\n"
+            "position = {}\nrotation = {{ xy = {} }}\nmaterial = \"bodies\"\n",
+            name(i), rounded_text(place(at, radius * std::cos(0.5 * step))), rounded_text(degrees));
+    }
+    for (std::uint64_t i = 0; i <= bodies; ++i)
+        text += joint("hinge", name(std::min(i, bodies - 1)),
+                      i > 0 && i < bodies ? name(i - 1) : std::string(),
+                      place(static_cast<double>(i), radius), "plane = \"xy\"\n");
+    return text;
+}
+
+/// Rows of balls, the last one as long as what is left; the first row is held.
+std::string grid(std::uint64_t bodies) {
+    constexpr double kApart = 0.5;
+    std::uint64_t n = 1;
+    while (n * n < bodies) ++n;
+    const std::uint64_t rows = bodies / n, rest = bodies % n;
+    const double width = kApart * static_cast<double>(n), height = 1 + width;
+    const Vec4 corner(-0.5 * (width - kApart), height, -0.5 * (width - kApart), 0);
+    const auto place = [&](double x, double z) { return Vec4(corner + kApart * Vec4(x, 0, z, 0)); };
+    const auto balls = [&](const char* name, std::uint64_t across, std::uint64_t deep, double z) {
+        const Vec4 centre = place(0.5 * (static_cast<double>(across) - 1),
+                                  z + 0.5 * (static_cast<double>(deep) - 1));
+        const std::string body =
+            fmt::format("name = \"{}\"\nshape = \"hypersphere\"\nradius = 0.15\n", name);
+        return lattice({{across, 1, deep, 1}, centre}, {kApart, 1, kApart, 1}, 0, body);
+    };
+    std::string text = stage("grid", "duration = 4\n", height, width) + floor_and_walls(0) +
+                       balls("joined", n, rows, 0);
+    if (rest > 0) text += balls("rest", rest, 1, static_cast<double>(rows));
+    // A lattice counts its last axis first.
+    const auto name = [&](std::uint64_t x, std::uint64_t z) {
+        return z < rows ? fmt::format("joined.{}", x * rows + z) : fmt::format("rest.{}", x);
+    };
+    for (std::uint64_t x = 0; x < n; ++x)
+        text += joint("point", name(x, 0), "", place(static_cast<double>(x), -0.5));
+    for (std::uint64_t i = 1; i < bodies; ++i) {
+        const std::uint64_t x = i % n, z = i / n;
+        const auto at_x = static_cast<double>(x), at_z = static_cast<double>(z);
+        if (x > 0) text += joint("point", name(x, z), name(x - 1, z), place(at_x - 0.5, at_z));
+        if (z > 0) text += joint("point", name(x, z), name(x, z - 1), place(at_x, at_z - 0.5));
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string generated_scene(std::string_view name, std::uint64_t bodies) {
@@ -297,8 +383,14 @@ std::string generated_scene(std::string_view name, std::uint64_t bodies) {
     if (name == "boxes") return head + heap(name, bodies, kUnevenBox);
     if (name == "polychora") return head + polychora(bodies);
     if (name == "stacks") return head + stacks(bodies);
-    TSR_ASSERT(name == "pyramid");
-    return head + pyramid(bodies);
+    if (name == "pyramid") return head + pyramid(bodies);
+    if (bodies > kMostJoined)
+        throw InputError(fmt::format("--bodies {}: a {} has at most {}, as each joint is a table",
+                                     bodies, name, kMostJoined));
+    if (name == "chain") return head + chain(bodies);
+    if (name == "grid") return head + grid(bodies);
+    TSR_ASSERT(name == "bridge");
+    return head + bridge(bodies);
 }
 
 }  // namespace tesserae::scenes

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -130,6 +131,9 @@ struct Turns {
         out.line(key, turns.size() == 1 ? text : "[" + text + "]");
     }
 };
+/// Returns the rotor of turns about the world's axes, one after the other [degrees].
+Rotor rotor_of(std::span<const Bivector> turns);
+
 struct TurningPlanes {
     static constexpr const char* kAllowed = "";
 

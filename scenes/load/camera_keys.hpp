@@ -16,18 +16,6 @@ constexpr std::string_view kEases[] = {"linear", "in", "out", "in-out"};
 /// A thousand turns [degrees].
 constexpr double kMostAngle = 360'000;
 
-/// The name of a body. Whether there is one is seen once all bodies are there.
-struct BodyName {
-    static constexpr const char* kAllowed = "name of a body; of a lattice NAME.N";
-
-    void read(TableReader& reader, const char* key, std::string& name) const {
-        if (reader.read(key, name) && name.empty()) reader.fail(key, "expected a body's name");
-    }
-    void write(EffectiveWriter& out, const char* key, const std::string& name) const {
-        if (!name.empty()) out.key(key, name);
-    }
-};
-
 constexpr Flag<FollowAxes> kFollowAxes[] = {
     {"x", &FollowAxes::x}, {"y", &FollowAxes::y}, {"z", &FollowAxes::z}, {"w", &FollowAxes::w}};
 /// All of them are not written.
@@ -80,11 +68,7 @@ struct OrbitTable {
     void write(EffectiveWriter& out, const char* key, const CameraOrbit& orbit) const {
         EffectiveWriter lines;
         orbit_keys(orbit, WriteKeys{lines});
-        std::string text = lines.take_text();
-        text.pop_back();
-        for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;)
-            text.replace(at, 1, ", ");
-        out.line(key, "{ " + text + " }");
+        out.line(key, inline_table(lines));
     }
 };
 

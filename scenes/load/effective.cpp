@@ -70,6 +70,7 @@ class Walker {
                 return true;
             case Lines::kMotion:
                 if (header_ == "[physics]") return key() != "duration";
+                if (header_ == "[[joint]]") return key() != "name";
                 return is_of_bodies && key() != "name" && key() != "material" &&
                        key() != "visible" && key() != "hue_jitter";
             case Lines::kLook:
@@ -193,6 +194,13 @@ void EffectiveWriter::table(std::string_view header) {
 
 void EffectiveWriter::line(std::string_view name, std::string_view value) {
     text_.append(name).append(" = ").append(value).append("\n");
+}
+
+std::string inline_table(const EffectiveWriter& lines) {
+    std::string text = "{ ";
+    for (const char c : lines.text()) text += c == '\n' ? std::string(", ") : std::string(1, c);
+    if (text.ends_with(", ")) text.resize(text.size() - 2);
+    return text + " }";
 }
 
 namespace {

@@ -48,6 +48,9 @@ class EffectiveWriter {
     std::string text_;
 };
 
+/// Returns lines that were written as a table's as an inline table: { key = value, ... }.
+std::string inline_table(const EffectiveWriter& lines);
+
 /// The lines of an effective scene that decide how bodies move, which is what a trajectory depends
 /// on: not how they are shown or called, nor for how long they move.
 std::string motion_part(std::string_view effective);

@@ -65,7 +65,12 @@ Scene load_scene_text(const std::filesystem::path& file, std::string source,
     errors.collect([&] { load_materials(root, origin, scene, out, materials); });
     // [[materials]] may hold them.
     materials.is_complete = materials.is_complete && errors.is_empty();
-    errors.collect([&] { load_bodies(root, origin, text, materials, overrides, scene, out); });
+    bool has_bodies = false;
+    errors.collect([&] {
+        load_bodies(root, origin, text, materials, overrides, scene, out);
+        has_bodies = true;
+    });
+    errors.collect([&] { load_joints(root, origin, has_bodies, scene, out); });
     errors.collect([&] { load_camera(root, origin, scene, out); });
     errors.collect([&] { load_lights(root, origin, scene, out); });
     errors.collect([&] { load_render(root, origin, scene, out); });

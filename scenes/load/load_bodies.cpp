@@ -107,9 +107,6 @@ void AnyShape::write(EffectiveWriter& out, const char* key, const Shape& shape) 
     visit_parameters(shape, WriteKeys{out});
 }
 
-namespace {
-
-/// Turns about the world's axes, one after the other.
 Rotor rotor_of(std::span<const Bivector> turns) {
     const auto one = [](const Bivector& degrees) {
         return exp(-0.5 * std::numbers::pi / 180 * degrees);
@@ -118,6 +115,8 @@ Rotor rotor_of(std::span<const Bivector> turns) {
     for (const Bivector& turn : turns.subspan(1)) rotor = one(turn) * rotor;
     return rotor;
 }
+
+namespace {
 
 /// A body without bounds never moves.
 void refuse_motion(TableReader& reader, BodyTable& body) {

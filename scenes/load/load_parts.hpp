@@ -29,6 +29,11 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
                  const MaterialNumbers& materials, Overrides& overrides, Scene& scene,
                  EffectiveWriter& out);
 
+/// All [[joint]].
+/// @param has_bodies   false: the bodies have errors, so that no joint can be made
+void load_joints(TableReader& root, const Origin& origin, bool has_bodies, Scene& scene,
+                 EffectiveWriter& out);
+
 void load_camera(TableReader& root, const Origin& origin, Scene& scene, EffectiveWriter& out);
 /// Once all is loaded: which body the camera follows.
 void find_followed(TableReader& root, const Origin& origin, Scene& scene);

@@ -11,6 +11,25 @@
 #include "scenes/load/scene_text.hpp"
 
 namespace tesserae::scenes {
+namespace {
+
+/// Keys of bodies and joints, each with one that it stands instead of.
+constexpr std::pair<std::string_view, std::string_view> kInstead[] = {
+    {"mass", "density"},        {"density", "mass"},
+    {"frequency", "stiffness"}, {"frequency", "damping_force"},
+    {"stiffness", "frequency"}, {"stiffness", "damping"},
+    {"speed", "target"},        {"speed", "frequency"},
+    {"speed", "damping"},       {"target", "speed"},
+};
+
+/// Tables of which there are several. All but lights have names.
+constexpr std::string_view kArrays[] = {"body", "lattice", "joint", "material", "light"};
+
+bool is_array_of_tables(std::string_view table) {
+    return std::find(std::begin(kArrays), std::end(kArrays), table) != std::end(kArrays);
+}
+
+}  // namespace
 
 struct Overrides::Entry {
     std::string place;  ///< "--set KEY=VALUE"
@@ -26,15 +45,16 @@ struct Overrides::Entry {
     /// Moves the value into `table`, below the path without its first `skipped` parts; tables on
     /// the way are made.
     void apply_to(toml::table& table, std::size_t skipped) {
-        // Mass and density are two ways to say one thing: the override's way holds.
-        if (skipped == 2 && path.back() == "mass") table.erase("density");
-        if (skipped == 2 && path.back() == "density") table.erase("mass");
         toml::table* at = &table;
         for (std::size_t i = skipped; i + 1 < path.size(); ++i) {
             if (!at->contains(path[i])) at->insert(path[i], toml::table{});
             at = at->get(path[i])->as_table();
             if (at == nullptr) fail(fmt::format("\"{}\" is no table", printable(path[i])));
         }
+        // Where two keys say one thing in two ways, the override's way holds.
+        if (skipped == 2)
+            for (const auto& [key, other] : kInstead)
+                if (path.back() == key) at->erase(other);
         std::move(*value).visit(
             [&](auto&& concrete) { at->insert_or_assign(path.back(), std::move(concrete)); });
     }
@@ -88,8 +108,7 @@ Overrides::Overrides(std::span<const std::string> sets) {
             std::end(kSceneTables))
             entry->fail(fmt::format("no table is called \"{}\"{}", printable(table),
                                     did_you_mean(table, kSceneTables)));
-        const bool is_array =
-            table == "body" || table == "lattice" || table == "material" || table == "light";
+        const bool is_array = is_array_of_tables(table);
         if (entry->path.size() < (is_array ? 3 : 2))
             entry->fail(is_array ? fmt::format("expected {}.{}.KEY=VALUE", table,
                                                table == "light" ? "NUMBER" : "NAME")
@@ -108,6 +127,14 @@ std::string name_of(const toml::table& table, std::size_t number, std::string_vi
     return name ? *name : fmt::format("{}{}", fallback, number);
 }
 
+/// Returns what entries call table number `index` of a kind that is not "body".
+std::string name_in(std::string_view kind, const toml::table& table, std::size_t index,
+                    std::size_t body_tables) {
+    if (kind == "light") return fmt::format("{}", index);
+    if (kind == "lattice") return name_of(table, index + body_tables, "body-");
+    return name_of(table, index, kind == "joint" ? "joint-" : "material ");
+}
+
 }  // namespace
 
 void Overrides::apply(toml::table& root, std::size_t body_tables) {
@@ -119,24 +146,20 @@ void Overrides::apply(toml::table& root, std::size_t body_tables) {
     // Names as they are in the file, before any entry changes one.
     std::unordered_map<std::string, std::vector<toml::node*>> targets;
     std::unordered_map<std::string, std::vector<std::string>> names;
-    for (const char* kind : {"material", "lattice", "light"}) {
+    for (const char* kind : {"material", "lattice", "joint", "light"}) {
         auto* array = root[kind].as_array();
         if (array == nullptr) continue;
         for (std::size_t i = 0; i < array->size(); ++i) {
             auto* table = array->get(i)->as_table();
             if (table == nullptr) continue;
-            const bool is_lattice = std::string_view(kind) == "lattice";
-            names[kind].push_back(std::string_view(kind) == "light"
-                                      ? fmt::format("{}", i)
-                                      : name_of(*table, i + (is_lattice ? body_tables : 0),
-                                                is_lattice ? "body-" : "material "));
+            names[kind].push_back(name_in(kind, *table, i, body_tables));
             targets[kind].push_back(table);
         }
     }
     for (const auto& entry : entries_) {
         const std::string& kind = entry->path.front();
         if (kind == "body") continue;
-        const bool is_array = kind == "material" || kind == "lattice" || kind == "light";
+        const bool is_array = is_array_of_tables(kind);
         toml::table* target = &root;
         if (is_array) {
             const auto& known = names[kind];

@@ -14,14 +14,17 @@
 namespace tesserae::scenes {
 
 /// The tables that a scene file may have.
-inline constexpr std::string_view kSceneTables[] = {
-    "scene", "physics", "material", "body", "lattice", "camera", "light", "render", "overlay"};
+inline constexpr std::string_view kSceneTables[] = {"scene",   "physics", "material", "body",
+                                                    "lattice", "joint",   "camera",   "light",
+                                                    "render",  "overlay"};
 
 /// The `--set KEY=VALUE` entries of a command line. KEY is a TOML key: `physics.iterations`,
-/// `camera.position`, `body.NAME.mass`, `lattice.NAME.count`, `material.NAME.albedo`,
-/// `light.0.strength` (lights have no names: their number in the file, from 0). NAME is the one in
-/// the file, or the default name; parts with other characters than A-Z a-z 0-9 - _ are quoted.
-/// Later entries win. Setting `mass` replaces a `density` and the other way round.
+/// `camera.position`, `body.NAME.mass`, `lattice.NAME.count`, `joint.NAME.anchor`,
+/// `material.NAME.albedo`, `light.0.strength` (lights have no names: their number in the file, from
+/// 0). NAME is the one in the file, or the default name; parts with other characters than A-Z a-z
+/// 0-9 - _ are quoted. Later entries win. A key that stands instead of others replaces them: `mass`
+/// a `density`, a joint's `stiffness` a `frequency`, a motor's `speed` a `target`, and the other
+/// way round.
 class Overrides {
   public:
     /// Parses all entries.
@@ -33,7 +36,7 @@ class Overrides {
 
     /// Applies the entries to a scene's tables, those for bodies in `root` included.
     /// @param body_tables   how many [[body]] tables come before the lattices: their default names
-    /// @throws InputError   no material, lattice or light of that name
+    /// @throws InputError   no material, lattice, joint or light of that name
     void apply(toml::table& root, std::size_t body_tables);
 
     /// Applies the entries for the bodies of `root`, the first of them being number `first`.

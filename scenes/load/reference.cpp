@@ -1,310 +1,31 @@
 #include "scenes/load/reference.hpp"
 
-#include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "core/error.hpp"
-#include "scenes/load/body_keys.hpp"
+#include "scenes/load/effective.hpp"
 #include "scenes/load/nearest_name.hpp"
-#include "scenes/load/overlay_keys.hpp"
-#include "scenes/load/picture_keys.hpp"
+#include "scenes/load/reference_tables.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
-struct Row {
-    std::string key, type, unit, otherwise, allowed, meaning;
-};
-/// Keys of a table that hold together: all of them, or those of one shape or type.
-struct Part {
-    std::string heading;  ///< empty: the table's own
-    std::vector<Row> rows;
-};
-struct Table {
-    std::string name, header, about;
-    std::vector<Part> parts;
-};
-
-// What a value's type is called.
-std::string type_name(bool) { return "boolean"; }
-std::string type_name(std::integral auto) { return "integer"; }
-std::string type_name(double) { return "real"; }
-std::string type_name(const std::string&) { return "string"; }
-std::string type_name(const Vec4&) { return "4 reals"; }
-std::string type_name(const Vec2&) { return "2 reals"; }
-std::string type_name(const render::Color&) { return "3 reals"; }
-std::string type_name(const Bivector&) { return "planes"; }
-std::string type_name(const std::array<std::int64_t, 2>&) { return "2 integers"; }
-std::string type_name(const std::vector<Vec4>&) { return "points"; }
-std::string type_name(RegularPolychoron) { return "string"; }
-
-std::string quoted(std::string_view name) { return fmt::format("`\"{}\"`", name); }
-
-// What a rule allows.
-std::string allowed_by(Interval i) {
-    const bool low = i.low > -kLargest, high = i.high < kLargest;
-    if (low && high && !i.low_open && !i.high_open)
-        return fmt::format("{} to {}", toml_text(i.low), toml_text(i.high));
-    std::string text;
-    if (low && i.low == kSmallest)
-        text = "> 0";
-    else if (low)
-        text = fmt::format("{} {}", i.low_open ? ">" : ">=", toml_text(i.low));
-    if (high)
-        text +=
-            fmt::format("{}{} {}", low ? ", " : "", i.high_open ? "<" : "<=", toml_text(i.high));
-    return text;
-}
-std::string allowed_by(IntegerRange range) {
-    return range.high == IntegerRange{}.high ? fmt::format(">= {}", range.low)
-                                             : fmt::format("{} to {}", range.low, range.high);
-}
-std::string allowed_by(Rule rule) {
-    if (rule == Rule::kNonZero) return "not zero";
-    if (rule == Rule::kSides) return ">= 3";
-    return allowed_by(interval_of(rule));
-}
-template <class R>
-std::string allowed_by(const R& rule) {
-    std::string text;
-    if constexpr (requires { R::kAllowed; }) {
-        text = R::kAllowed;
-    } else if constexpr (requires { rule.names; }) {
-        for (std::string_view name : rule.names) text += (text.empty() ? "" : ", ") + quoted(name);
-    } else if constexpr (requires { rule.flags; }) {
-        for (const auto& flag : rule.flags) text += (text.empty() ? "" : ", ") + quoted(flag.name);
-    } else if constexpr (requires { rule.interval; }) {
-        text = allowed_by(rule.interval);
-    } else if constexpr (requires { rule.range; }) {
-        text = allowed_by(rule.range);
-    } else {
-        text = allowed_by(rule.rule);
-    }
-    return text;
-}
-
-template <class R>
-std::string type_by(const R& rule, const auto& value) {
-    if constexpr (requires { R::kType; })
-        return R::kType;
-    else if constexpr (requires { rule.names; })
-        return "string";
-    else if constexpr (requires { rule.flags; })
-        return "strings";
-    else if constexpr (requires { rule.rule; })
-        return type_by(rule.rule, value);
-    else
-        return type_name(value);
-}
-
-/// A value as scene files have it.
-std::string value_text(const Key& key, const auto& value, const auto& rule) {
-    EffectiveWriter out;
-    WriteKeys{out}(key, value, rule);
-    const std::string& line = out.text();
-    // Not written at its default.
-    if (line.empty()) {
-        if constexpr (requires { rule.names; })
-            return toml_text(rule.names[static_cast<std::size_t>(value)]);
-        else if constexpr (requires { toml_text(value); })
-            return toml_text(value);
-    }
-    const auto begin = line.find(" = ") + 3;
-    return line.substr(begin, line.find('\n') - begin);
-}
-
-/// Makes a row of each key of a list; the values are the defaults.
-struct DescribeKeys {
-    std::vector<Row>& rows;
-
-    void operator()(const Key& key, const auto& value) const { (*this)(key, value, Any{}); }
-    template <class T, class R>
-    void operator()(const Key& key, const T& value, const R& rule) const {
-        std::string otherwise = "required";
-        if (key.otherwise != nullptr)
-            otherwise = key.otherwise;
-        else if constexpr (!requires { rule.expected; })
-            otherwise = "`" + value_text(key, value, rule) + "`";
-        rows.push_back(
-            {key.name, type_by(rule, value), key.unit, otherwise, allowed_by(rule), key.meaning});
-    }
-    template <class T>
-    void operator()(const Key& key, const std::optional<T>&, const auto& rule) const {
-        (*this)(key, T(), rule);
-    }
-
-  private:
-    struct Any {
-        static constexpr const char* kAllowed = "";
-        void write(EffectiveWriter& out, const char* key, const auto& value) const {
-            out.key(key, value);
-        }
-    };
-};
-
-/// The rows of some lists of keys: `part` calls them with a DescribeKeys.
-std::vector<Row> rows_of(const auto& part) {
-    std::vector<Row> rows;
-    part(DescribeKeys{rows});
-    return rows;
-}
-
-/// A part of a table; `keys` visits lists of keys with a DescribeKeys.
-Part part_of(std::string heading, const auto& keys) {
-    Part part{std::move(heading), {}};
-    keys(DescribeKeys{part.rows});
-    return part;
-}
-
-template <class S>
-void add_sizes(const S& shape, std::vector<Row>& rows) {
-    shape.parameters(shape, [&](const Key& key, const auto& value, Rule rule) {
-        rows.push_back({key.name, type_name(value), key.unit,
-                        rule == Rule::kFinite ? "`0.0`" : "required", allowed_by(rule),
-                        key.meaning});
-    });
-}
-/// Points, or a regular one's name and radius.
-void add_sizes(Polychoron shape, std::vector<Row>& rows) {
-    for (const auto which : {RegularPolychoron::kNone, RegularPolychoron::k8Cell}) {
-        shape.regular = which;
-        shape.parameters(shape, [&](const Key& key, const auto& value, Rule rule) {
-            rows.push_back({key.name, type_name(value), key.unit,
-                            which == RegularPolychoron::kNone ? "or a regular one" : "or vertices",
-                            allowed_by(rule), key.meaning});
-        });
-    }
-    for (Row& row : rows)
-        if (row.key == "regular")
-            for (std::string_view name : kRegularNames)
-                row.allowed += (row.allowed.empty() ? "" : ", ") + quoted(name);
-}
-
-template <std::size_t... I>
-void add_shapes(std::vector<Part>& parts, std::index_sequence<I...>) {
-    const auto add = [&]<class S>(const S& shape) {
-        parts.push_back({fmt::format("shape = \"{}\"", S::kName), {}});
-        add_sizes(shape, parts.back().rows);
-    };
-    (add(std::variant_alternative_t<I, Shape>()), ...);
-}
-
-Table body_table() {
-    const BodyTable body;
-    Table table{"body",
-                "[[body]]",
-                "A body, with the sizes of its shape. A hyperplane never moves: it takes no "
-                "position, rotation, "
-                "velocity or mass.",
-                {}};
-    table.parts.push_back(part_of("", [&](const DescribeKeys& visit) {
-        name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
-        mass_keys(body, visit), surface_keys(body, visit, MaterialNumbers());
-    }));
-    add_shapes(table.parts, std::make_index_sequence<std::variant_size_v<Shape>>());
-    return table;
-}
-
-Table light_table() {
-    Table table{"light", "[[light]]", "A light; a scene without any has a sky of 1.", {}};
-    LightTable light;
-    table.parts.push_back(part_of("", [&](const DescribeKeys& visit) {
-        light_type_keys(light, visit), light_color_keys(light, visit);
-    }));
-    for (const auto type : {LightType::kSun, LightType::kPoint, LightType::kSphere}) {
-        light.type = type;
-        table.parts.push_back(
-            part_of(fmt::format("type = \"{}\"", kLightTypes[static_cast<std::size_t>(type)]),
-                    [&](const DescribeKeys& visit) { light_place_keys(light, visit); }));
-    }
-    return table;
-}
-
-std::vector<Table> all_tables() {
-    struct {
-        std::string name;
-    } const scene;
-    const PhysicsSettings physics;
-    const render::Material material;
-    const Lattice lattice;
-    const render::CameraDescription camera;
-    const CameraKey key;
-    const CameraOrbit orbit;
-    const CameraMotion motion;
-    const render::Settings settings;
-    const Overlay overlay;
-    const Caption caption;
-    using Visit = const DescribeKeys&;
-    return {
-        {"scene",
-         "[scene]",
-         "What the scene is called.",
-         {part_of("", [&](Visit visit) { scene_keys(scene, visit); })}},
-        {"physics",
-         "[physics]",
-         "How bodies move; without this table the scene is a still.",
-         {part_of("", [&](Visit visit) { physics_keys(physics, visit); })}},
-        {"material",
-         "[[material]]",
-         "How the bodies that name it look.",
-         {part_of("", [&](Visit visit) { material_keys(material, visit); })}},
-        body_table(),
-        {"lattice",
-         "[[lattice]]",
-         "A grid of equal bodies: all keys of a body but a hyperplane, whose position is the "
-         "grid's centre, and "
-         "these.",
-         {part_of("", [&](Visit visit) { lattice_keys(lattice, visit, kMaxBodies); })}},
-        {"camera",
-         "[camera]",
-         "Where the camera is and what slice it sees.",
-         {part_of(
-             "",
-             [&](Visit visit) { camera_keys(camera, visit), camera_motion_keys(motion, visit); })}},
-        {"camera.key",
-         "[[camera.key]]",
-         "What the camera is like at a time; it moves smoothly from key to key. Each has at least "
-         "one key beside its time.",
-         {part_of("", [&](Visit visit) { camera_key_keys(key, visit, {}); }),
-          part_of("orbit = { ... }", [&](Visit visit) { orbit_keys(orbit, visit); })}},
-        light_table(),
-        {"render",
-         "[render]",
-         "The frames: size, samples, how light is found, what files hold.",
-         {part_of("",
-                  [&](Visit visit) {
-                      frame_keys(settings, visit), pixel_keys(settings, visit);
-                      ray_keys(settings, visit), ghost_keys(settings, visit);
-                      file_keys(settings, visit);
-                  })}},
-        {"overlay",
-         "[overlay]",
-         "What is written over previews and films; the EXR files stay as they are.",
-         {part_of("", [&](Visit visit) { overlay_keys(overlay, visit); })}},
-        {"overlay.caption",
-         "[[overlay.caption]]",
-         "A line of text that is shown for some time.",
-         {part_of("", [&](Visit visit) { caption_keys(caption, visit); })}},
-    };
-}
-
-std::string markdown(const std::vector<Row>& rows) {
+std::string markdown(const std::vector<ReferenceRow>& rows) {
     std::string text =
         "| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n";
-    for (const Row& row : rows)
+    for (const ReferenceRow& row : rows)
         text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", row.key, row.type, row.unit,
                             row.otherwise, row.allowed, row.meaning);
     return text;
 }
-std::string markdown(const Part& part) {
+std::string markdown(const ReferencePart& part) {
     const std::string heading =
         part.heading.empty() ? "" : fmt::format("### `{}`\n\n", part.heading);
     return heading + markdown(part.rows);
 }
-std::string markdown(const Table& table) {
+std::string markdown(const ReferenceTable& table) {
     std::string text = fmt::format("## `{}`\n\n{}\n", table.header, table.about);
-    for (const Part& part : table.parts) text += "\n" + markdown(part);
+    for (const ReferencePart& part : table.parts) text += "\n" + markdown(part);
     return text;
 }
 
@@ -319,34 +40,52 @@ A scene file is [TOML](https://toml.io). This page lists all that it can hold. T
   Colours are red, green and blue, linear.
 - A point or direction is `[x, y, z, w]`. Planes are a table such as `{ xy = 30, zw = 15 }`; those that are left out are 0.
 - An integer may stand for a real. Every key has a default unless the table says *required*. An unknown key is an error.
-- `--set TABLE.KEY=VALUE` on the command line replaces one key. Bodies, lattices and materials are reached by name and lights by
-  number: `--set body.NAME.mass=2`, `--set light.0.strength=3`.
+- `--set TABLE.KEY=VALUE` on the command line replaces one key. Bodies, lattices, joints and materials are reached by name and
+  lights by number: `--set body.NAME.mass=2`, `--set light.0.strength=3`.
 - No real is larger than 10^15, and what must be > 0 is at least 10^-15; only masses may be.
 )";
 
-/// The rows of a key, each with the part that it belongs to; empty: there is no such key.
-std::string markdown_of_key(const Table& table, std::string_view key) {
+/// The parts of one shape or type. Those of several tables may be called the same.
+std::string markdown_of_parts(const std::vector<ReferenceTable>& tables, std::string_view name) {
+    std::vector<ReferencePart> parts;
+    std::vector<std::string> headers;
+    const std::string ending = fmt::format(" = \"{}\"", name);
+    for (const ReferenceTable& table : tables)
+        for (const ReferencePart& part : table.parts)
+            if (part.heading.ends_with(ending))
+                parts.push_back(part), headers.push_back(table.header);
     std::string text;
-    for (const Part& part : table.parts)
-        for (const Row& row : part.rows)
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts.size() > 1) parts[i].heading = headers[i] + ", " + parts[i].heading;
+        text += (text.empty() ? "" : "\n") + markdown(parts[i]);
+    }
+    return text;
+}
+
+/// The rows of a key, each with the part that it belongs to; empty: there is no such key.
+std::string markdown_of_key(const ReferenceTable& table, std::string_view key) {
+    std::string text;
+    for (const ReferencePart& part : table.parts)
+        for (const ReferenceRow& row : part.rows)
             if (row.key == key)
                 text += (text.empty() ? "" : "\n") + markdown({part.heading, {row}});
     return text;
 }
 
 /// A key by its name alone, in every table and part that has it; after a dot, in those of a part.
-std::string markdown_of_bare_key(const std::vector<Table>& tables, std::string_view topic) {
+std::string markdown_of_bare_key(const std::vector<ReferenceTable>& tables,
+                                 std::string_view topic) {
     const auto dot = topic.rfind('.');
     const std::string_view key = dot == topic.npos ? topic : topic.substr(dot + 1);
     const std::string part_name =
         dot == topic.npos ? "" : fmt::format("\"{}\"", topic.substr(0, dot));
     std::string text;
-    for (const Table& table : tables)
-        for (const Part& part : table.parts) {
+    for (const ReferenceTable& table : tables)
+        for (const ReferencePart& part : table.parts) {
             if (part.heading.find(part_name) == std::string::npos) continue;
             const std::string heading =
                 table.header + (part.heading.empty() ? "" : ", ") + part.heading;
-            for (const Row& row : part.rows)
+            for (const ReferenceRow& row : part.rows)
                 if (row.key == key) text += (text.empty() ? "" : "\n") + markdown({heading, {row}});
         }
     return text;
@@ -355,32 +94,31 @@ std::string markdown_of_bare_key(const std::vector<Table>& tables, std::string_v
 }  // namespace
 
 std::string reference(std::string_view topic) {
-    const std::vector<Table> tables = all_tables();
+    const std::vector<ReferenceTable> tables = all_reference_tables();
     // [[body]] as body.
     while (topic.starts_with('[') && topic.ends_with(']'))
         topic = topic.substr(1, topic.size() - 2);
     if (topic.empty()) {
         std::string text(kIntroduction);
-        for (const Table& table : tables) text += "\n" + markdown(table);
+        for (const ReferenceTable& table : tables) text += "\n" + markdown(table);
         return text;
     }
     std::vector<std::string> known;
-    for (const Table& table : tables) {
+    for (const ReferenceTable& table : tables) {
         if (topic == table.name) return markdown(table);
         known.push_back(table.name);
-        for (const Part& part : table.parts) {
+        for (const ReferencePart& part : table.parts) {
             // shape = "hyperbox" is also found as hyperbox.
             const auto quote = part.heading.find('"');
-            if (quote != std::string::npos) {
+            if (quote != std::string::npos)
                 known.push_back(part.heading.substr(quote + 1, part.heading.size() - quote - 2));
-                if (topic == known.back()) return markdown(part);
-            }
-            for (const Row& row : part.rows) known.push_back(table.name + "." + row.key);
+            for (const ReferenceRow& row : part.rows) known.push_back(table.name + "." + row.key);
         }
     }
+    if (std::string text = markdown_of_parts(tables, topic); !text.empty()) return text;
     const auto dot = topic.rfind('.');
     const std::string_view name = topic.substr(0, dot);
-    for (const Table& table : tables) {
+    for (const ReferenceTable& table : tables) {
         const bool has_body_keys = name == "lattice" && table.name == "body";
         if (dot == std::string_view::npos || (name != table.name && !has_body_keys)) continue;
         if (std::string text = markdown_of_key(table, topic.substr(dot + 1)); !text.empty())
@@ -391,7 +129,7 @@ std::string reference(std::string_view topic) {
     std::string hint = did_you_mean(topic, names);
     if (hint.empty()) {
         hint = "; tables:";
-        for (const Table& table : tables) hint += " " + table.name;
+        for (const ReferenceTable& table : tables) hint += " " + table.name;
     }
     throw InputError(fmt::format("reference {}: no table or key is called so{}",
                                  toml_text(printable(topic)), hint));

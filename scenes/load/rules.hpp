@@ -132,6 +132,18 @@ struct NamesOrUnwritten : Names {
     }
 };
 
+/// The name of a body. Whether there is one is seen once all bodies are there.
+struct BodyName {
+    static constexpr const char* kAllowed = "name of a body; of a lattice NAME.N";
+
+    void read(TableReader& reader, const char* key, std::string& name) const {
+        if (reader.read(key, name) && name.empty()) reader.fail(key, "expected a body's name");
+    }
+    void write(EffectiveWriter& out, const char* key, const std::string& name) const {
+        if (!name.empty()) out.key(key, name);
+    }
+};
+
 template <class T>
 struct Flag {
     std::string_view name;

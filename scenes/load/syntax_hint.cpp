@@ -20,7 +20,7 @@ std::string syntax_hint(std::string_view what, std::size_t line, std::size_t col
         return "; expected a number, true or false, a \"string\" in quotes, an [array] or a "
                "{ key = table }";
     if (!says("cannot redefine existing table")) return {};
-    for (const char* table : {"body", "lattice", "material", "light"})
+    for (const char* table : {"body", "lattice", "joint", "material", "light"})
         if (says(fmt::format("'{}'", table)))
             return fmt::format("; there may be several [[{}]], each with two brackets", table);
     return "; expected one table of this name, with all its keys";

@@ -61,6 +61,12 @@ const char* why_at_rest(const Scene& scene, BodyId body) {
     return nullptr;
 }
 
+void check_joint(Unused unused, const Scene& scene, std::size_t number) {
+    unused(!scene.physics, "type", "a still: without [physics] nothing moves");
+    const Joint& joint = scene.joints[number];
+    unused(joint.a == kWorld && joint.collide, "collide", "there is no b");
+}
+
 void check_follow(Unused unused, const Scene& scene) {
     const CameraMotion& motion = scene.camera_motion;
     unused(!motion.followed, "follow_axes", "there is no follow");
@@ -104,6 +110,13 @@ void find_unused_keys(TableReader& root, const Origin& origin, Scene& scene) {
         double jitter = 0;
         reader.read("jitter", jitter, Rule::kNonNegative);
         Unused(reader, lines)(jitter == 0, "seed", "jitter = 0: nothing of it is random");
+    }
+    const auto joints = root.tables("joint");
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        TableReader reader(
+            *joints[i], origin,
+            fmt::format("joint {} {}", i, toml_text(printable(scene.joint_names[i]))));
+        check_joint({reader, lines}, scene, i);
     }
     if (const auto* table = root.table("camera")) {
         TableReader reader(*table, origin, "[camera]");

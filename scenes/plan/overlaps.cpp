@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/step/step.hpp"
@@ -45,6 +46,12 @@ double depth_of(const Bodies& bodies, BodyId a, BodyId b, std::vector<Contact>& 
     return depth;
 }
 
+/// Whether a joint keeps two bodies from having contacts.
+bool is_apart(const Joints& joints, BodyId a, BodyId b) {
+    const std::pair<BodyId, BodyId> pair = std::minmax(a, b);
+    return std::binary_search(joints.apart.begin(), joints.apart.end(), pair);
+}
+
 std::string name_at(const Scene& scene, BodyId id) {
     const auto run = std::prev(
         std::upper_bound(scene.names.begin(), scene.names.end(), id,
@@ -58,13 +65,14 @@ std::string name_at(const Scene& scene, BodyId id) {
 std::vector<std::string> overlap_warnings(const Scene& scene) {
     std::vector<std::string> warnings;
     if (!scene.physics || scene.physics->duration == 0) return warnings;
-    const Simulation simulation = make_simulation(scene.bodies, *scene.physics);
+    const Simulation simulation = make_simulation(scene.bodies, *scene.physics, scene.joints);
     parallel::PairTable pairs;
     parallel::SortAndSweep().overlapping_pairs(simulation, bounds_of(simulation), pairs);
 
     std::vector<Overlap> overlaps;
     std::vector<Contact> contacts;
     pairs.for_each({0, pairs.size()}, [&](BodyId a, BodyId b) {
+        if (is_apart(simulation.joints, a, b)) return;
         const TypeProperties &type_a = simulation.type_of(a), &type_b = simulation.type_of(b);
         if (type_a.inverse_mass == 0 && type_b.inverse_mass == 0) return;
         const double depth = depth_of(simulation.bodies, a, b, contacts);

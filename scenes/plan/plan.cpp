@@ -14,6 +14,7 @@
 #include "scenes/plan/plan_picture.hpp"
 #include "scenes/process/memory.hpp"
 #include "scenes/timeline.hpp"
+#include "scenes/trajectory/joint_datasets.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 namespace tesserae::scenes {
@@ -57,14 +58,16 @@ bool any_motion(const Scene& scene) {
     if (!scene.physics || scene.physics->duration == 0) return false;
     const Bodies& bodies = scene.bodies;
     const bool falls = !scene.physics->gravity.isZero(0);
+    const bool is_driven = std::any_of(scene.joints.begin(), scene.joints.end(),
+                                       [](const Joint& joint) { return !joint.drives.empty(); });
     for (BodyId id = 0; id < bodies.size(); ++id) {
         const BodyType& type = bodies.type_of(id);
         if (!is_bounded(type.shape)) continue;
         if ((falls && !type.fixed_position) || !bodies.velocity[id].isZero(0) ||
             !(bodies.angular_velocity[id] == Bivector{}))
             return true;
-        // Overlapping bodies push each other apart even without gravity.
-        if (bodies.is_movable(id) && bodies.size() > 1) return true;
+        // Even without gravity, overlapping bodies push each other apart, and springs pull.
+        if (bodies.is_movable(id) && (bodies.size() > 1 || is_driven)) return true;
     }
     return false;
 }
@@ -107,6 +110,8 @@ void decide_physics(const Scene& scene, Plan& plan) {
         scene.physics ? "nothing can move: every frame shows time 0"
                       : "the scene has no [physics] table: a still");
     if (!plan.moves) return;
+    if (plan.joints > 0)
+        plan.decide("joints", true, fmt::format("{} between bodies, or the world", plan.joints));
     const std::vector<TypeProperties> types = type_properties(scene.bodies);
     const Needs needs = needs_of(scene.bodies, types);
     plan.decide("rotors and angular velocities", needs.turning,
@@ -176,9 +181,10 @@ std::uint64_t memory_to_render(const Scene& scene, const Plan& plan, int threads
 std::uint64_t trajectory_bytes(const Scene& scene, const Plan& plan, int frames) {
     if (!plan.moves) return 0;
     // A frame lies between two stored steps, its shutter over some more.
-    return plan.bodies * ((2 + shutter_steps(scene, 0).size()) *
-                              static_cast<std::uint64_t>(frames) * kStateBytes +
-                          description_bytes({scene.bodies.types, scene.bodies.type, scene.names}));
+    const std::uint64_t rows =
+        (2 + shutter_steps(scene, 0).size()) * static_cast<std::uint64_t>(frames);
+    return rows * (plan.bodies * kStateBytes + plan.joints * kJointRowBytes) +
+           plan.bodies * description_bytes({scene.bodies.types, scene.bodies.type, scene.names});
 }
 
 std::string memory_text(std::uint64_t bytes) {
@@ -195,6 +201,7 @@ Plan make_plan(const Scene& scene, int threads) {
     plan.bodies = scene.bodies.size();
     const auto can_move = [&](std::uint32_t type) { return is_movable(scene.bodies.types[type]); };
     plan.movable_bodies = count_if_type(scene.bodies, can_move);
+    plan.joints = scene.joints.size();
     plan.moves = any_motion(scene);
     plan.steps = step_count(scene);
     plan.frames = frame_count(scene);

@@ -28,7 +28,7 @@ struct Plan {
 
     bool moves = false;  ///< some body changes its pose: steps are taken
 
-    std::uint64_t bodies = 0, movable_bodies = 0;
+    std::uint64_t bodies = 0, movable_bodies = 0, joints = 0;
     std::uint64_t steps = 0;             ///< time steps of the whole scene
     int frames = 0;                      ///< of the whole scene
     std::uint64_t view_rays = 0;         ///< of all frames, at most

@@ -8,7 +8,10 @@
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
+#include "scenes/load/effective.hpp"
+#include "scenes/load/nearest_name.hpp"
 #include "scenes/plot/gnuplot.hpp"
+#include "scenes/trajectory/joint_datasets.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -31,7 +34,8 @@ constexpr const char* kLineColours[] = {"#0072b2", "#d55e00", "#000000",
 
 using ValueOfStep = std::function<double(const StepFacts&)>;
 
-PlotLine line_of(const char* name, const std::vector<StepFacts>& facts, const ValueOfStep& value) {
+PlotLine line_of(const std::string& name, const std::vector<StepFacts>& facts,
+                 const ValueOfStep& value) {
     PlotLine line{name, {}, {}};
     const auto add = [&](std::size_t row) {
         line.time.push_back(facts[row].time);
@@ -128,6 +132,33 @@ std::vector<PlotPanel> observables_plot(const std::vector<StepFacts>& facts) {
     return {energy, momentum, angular, counts, overlap, residual};
 }
 
+std::vector<PlotPanel> joints_plot(const std::vector<StepFacts>& facts,
+                                   const std::vector<JointDescription>& joints) {
+    const auto panel = [&](const char* title, std::vector<double> JointFacts::*values,
+                           const char* unit) {
+        PlotPanel made{title, false, {}};
+        for (std::size_t joint = 0; joint < joints.size(); ++joint)
+            if (!unit || joints[joint].unit == unit)
+                made.lines.push_back(line_of(joints[joint].name, facts, [=](const StepFacts& f) {
+                    // Of numbers that are smaller gnuplot makes no range.
+                    constexpr double kLeast = 1e-300;
+                    const double number = (f.joints.*values)[joint];
+                    return std::abs(number) < kLeast ? 0 : number;
+                }));
+        return made;
+    };
+    std::vector<PlotPanel> panels = {
+        panel("impulse in a step [N s]", &JointFacts::impulse, nullptr),
+        panel("angular impulse in a step [N m s]", &JointFacts::angular_impulse, nullptr),
+        panel("error [m]", &JointFacts::error, nullptr),
+        panel("angular error [deg]", &JointFacts::angular_error, nullptr)};
+    PlotPanel lengths = panel("position [m]", &JointFacts::position, "m");
+    PlotPanel angles = panel("position [deg]", &JointFacts::position, "deg");
+    for (PlotPanel* position : {&lengths, &angles})
+        if (!position->lines.empty()) panels.push_back(std::move(*position));
+    return panels;
+}
+
 std::string plot_script(const std::vector<PlotPanel>& panels, const std::string& title,
                         const std::string& terminal) {
     // Every panel has the same span of time; one of no length would have no axis.
@@ -170,6 +201,46 @@ std::string plot_script(const std::vector<PlotPanel>& panels, const std::string&
 
 namespace {
 
+/// The numbers of a trajectory's joints that have these names. @throws InputError
+std::vector<std::size_t> joints_of_names(const fs::path& trajectory,
+                                         const std::vector<JointDescription>& joints,
+                                         const std::vector<std::string>& names) {
+    std::vector<std::size_t> numbers;
+    for (const std::string& name : names) {
+        const auto at = std::ranges::find(joints, name, &JointDescription::name);
+        if (at == joints.end()) {
+            std::vector<std::string_view> known;
+            for (const JointDescription& joint : joints) known.push_back(joint.name);
+            throw InputError(fmt::format("{}: has no joint \"{}\"{}", trajectory.string(),
+                                         printable(name), did_you_mean(name, known)));
+        }
+        numbers.push_back(static_cast<std::size_t>(at - joints.begin()));
+    }
+    return numbers;
+}
+
+/// What is plotted of joints of these names.
+std::vector<PlotPanel> panels_of_joints(const TrajectoryReader& reader, const fs::path& trajectory,
+                                        std::vector<StepFacts> facts,
+                                        const std::vector<std::string>& names) {
+    const std::vector<JointDescription>& all = reader.header().joints;
+    const std::vector<std::size_t> numbers = joints_of_names(trajectory, all, names);
+    std::vector<JointDescription> joints;
+    for (const std::size_t number : numbers) joints.push_back(all[number]);
+    for (std::size_t row = 0; row < facts.size(); ++row) {
+        const JointFacts read = reader.joints(row);
+        JointFacts& kept = facts[row].joints = room_for_joints(numbers.size());
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            kept.impulse[i] = read.impulse[numbers[i]];
+            kept.angular_impulse[i] = read.angular_impulse[numbers[i]];
+            kept.error[i] = read.error[numbers[i]];
+            kept.angular_error[i] = read.angular_error[numbers[i]];
+            kept.position[i] = read.position[numbers[i]];
+        }
+    }
+    return joints_plot(facts, joints);
+}
+
 /// What gnuplot draws. @throws RunError   with the picture's path and the reason
 std::string drawn(const std::string& script, const fs::path& picture) try {
     std::string drawing = gnuplot_output(script);
@@ -181,7 +252,8 @@ std::string drawn(const std::string& script, const fs::path& picture) try {
 
 }  // namespace
 
-bool plot(const fs::path& trajectory, const fs::path& picture, bool overwrite) {
+bool plot(const fs::path& trajectory, const fs::path& picture,
+          const std::vector<std::string>& joints, bool overwrite) {
     const bool is_svg = picture.extension() == ".svg";
     if (!is_svg && picture.extension() != ".png")
         throw InputError(
@@ -196,8 +268,10 @@ bool plot(const fs::path& trajectory, const fs::path& picture, bool overwrite) {
     const std::string title =
         fmt::format("{}: {} bodies, steps {} to {}", reader.header().scene_name,
                     reader.header().bodies, facts.front().step, facts.back().step);
-    const std::string drawing =
-        drawn(plot_script(observables_plot(facts), title, terminal), picture);
+    const std::vector<PlotPanel> panels = joints.empty()
+                                              ? observables_plot(facts)
+                                              : panels_of_joints(reader, trajectory, facts, joints);
+    const std::string drawing = drawn(plot_script(panels, title, terminal), picture);
 
     if (fs::exists(picture)) {
         std::ifstream in(picture, std::ios::binary);

@@ -26,18 +26,25 @@ struct PlotPanel {
 /// largest value in each of as many equal parts of the time, so that no peak is lost.
 std::vector<PlotPanel> observables_plot(const std::vector<StepFacts>& facts);
 
+/// What is plotted of some joints: impulses in a step, errors and positions, over time, with a line
+/// for each joint. Positions are there for joints that have one.
+/// @param joints   those that `facts` tell of
+std::vector<PlotPanel> joints_plot(const std::vector<StepFacts>& facts,
+                                   const std::vector<JointDescription>& joints);
+
 /// The script by which gnuplot draws panels one below the other, into its standard output.
 /// @param terminal   of gnuplot, with its options
 std::string plot_script(const std::vector<PlotPanel>& panels, const std::string& title,
                         const std::string& terminal);
 
-/// Draws the observables of a trajectory, finished or not, into an .svg or .png file.
+/// Draws the observables of a trajectory, finished or not, or what its joints do, into an .svg or
+/// .png file.
+/// @param joints   names of joints; none: the observables
 /// @return false   the file is there already, as it would be written
-/// @throws InputError   another ending; not a trajectory, or one without steps; another file of
-/// that
-///                      name is there, and not `overwrite`
+/// @throws InputError   another ending; not a trajectory, or one without steps, or without a joint
+///                      of such a name; another file of that name is there, and not `overwrite`
 /// @throws RunError     no gnuplot; the file cannot be written
 bool plot(const std::filesystem::path& trajectory, const std::filesystem::path& picture,
-          bool overwrite);
+          const std::vector<std::string>& joints, bool overwrite);
 
 }  // namespace tesserae::scenes

@@ -135,10 +135,15 @@ void add_compare(CLI::App& app, CommandLine& line) {
 
 void add_tools(CLI::App& app, CommandLine& line) {
     CLI::App& plot = *app.add_subcommand(
-        "plot", "energies, momenta, contacts, overlap and residual over time, by gnuplot");
+        "plot",
+        "energies, momenta, contacts, overlap and residual over time, or what joints do, by "
+        "gnuplot");
     add_common(plot, line);
     plot.add_option("file", line.file, "trajectory (HDF5)")->required();
     add_output(plot, line, "the picture: FILE.svg or FILE.png");
+    plot.add_option("--joint", line.joints,
+                    "a joint's name: its impulses, errors and position instead")
+        ->allow_extra_args(false);
 
     CLI::App& exported = *app.add_subcommand(
         "export", "the slice's bodies as meshes, a frame a file, for other programs");

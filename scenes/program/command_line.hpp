@@ -27,6 +27,7 @@ struct CommandLine {
     std::string format;                       ///< export's: "ply" or "vtk"
     std::optional<double> tolerance, extent;  ///< export's [m]
     std::optional<double> near_slice;         ///< view's [m]
+    std::vector<std::string> joints;          ///< plot's: their names
     int threads = 0;
     FarmRequest farm;                        ///< of submit
     std::optional<render::FramePart> tiles;  ///< of render: a part of each frame

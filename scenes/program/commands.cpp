@@ -46,6 +46,7 @@ Json to_json(const Plan& plan) {
         decisions.push_back({{"part", d.part}, {"needed", d.needed}, {"reason", d.reason}});
     return {{"bodies", plan.bodies},
             {"movable_bodies", plan.movable_bodies},
+            {"joints", plan.joints},
             {"steps", plan.steps},
             {"frames", plan.frames},
             {"view_rays", plan.view_rays},
@@ -65,6 +66,7 @@ std::string gigabytes(auto bytes) {
 void print_plan(const Plan& plan, const Cost& cost, std::size_t frames, std::uint64_t taken) {
     const bool is_part = frames < static_cast<std::size_t>(plan.frames);
     put_line("bodies      {} ({} movable)", plan.bodies, plan.movable_bodies);
+    if (plan.joints > 0) put_line("joints      {}", plan.joints);
     put_line("steps       {}{}", plan.steps,
              plan.moves && taken < plan.steps
                  ? fmt::format(" ({} to the last frame{})", taken, is_part ? " of these" : "")

@@ -32,6 +32,7 @@ Json to_json(const FirstDifference& first) {
     Json json = {{"step", first.step}, {"time", first.time}};
     if (first.body) json["body"] = *first.body;
     if (!first.body_name.empty()) json["name"] = first.body_name;
+    if (first.joint) json["joint"] = *first.joint, json["name"] = first.joint_name;
     json["component"] = first.component;
     json["a"] = first.a, json["b"] = first.b;
     json["difference"] = first.difference;
@@ -47,6 +48,7 @@ Json to_json(const StepDifference& row) {
 
 Json to_json(const TrajectoryDifference& difference) {
     Json json = {{"bodies", {difference.bodies_a, difference.bodies_b}},
+                 {"joints", {difference.joints_a, difference.joints_b}},
                  {"scene", difference.scene},
                  {"motion", difference.motion},
                  {"steps_only_a", to_json(difference.only_a)},

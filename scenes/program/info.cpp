@@ -92,6 +92,7 @@ Facts scene_facts(const std::filesystem::path& file, int threads) {
                    text("motion hash", scene.motion_hash),
                    count("bodies", plan.bodies),
                    count("movable bodies", plan.movable_bodies),
+                   count("joints", scene.joints.size()),
                    count("materials", scene.materials.size()),
                    count("suns", scene.lights.suns.size()),
                    count("point lights", scene.lights.points.size()),
@@ -170,6 +171,7 @@ Facts trajectory_facts(const std::filesystem::path& file) {
                    count("motion version", header.motion_version),
                    text("written by", "tesserae " + header.program_version),
                    count("bodies", header.bodies),
+                   count("joints", header.joints.size()),
                    {"steps per second", json_number(header.steps_per_second),
                     fmt::format("{}", header.steps_per_second)},
                    count("rows", trajectory.rows())};
@@ -185,6 +187,11 @@ Facts trajectory_facts(const std::filesystem::path& file) {
                              : "yes"});
     }
     append_diagnostics(facts, trajectory.facts());
+    if (!header.joints.empty()) {
+        const auto broken = trajectory.joints(trajectory.rows() - 1).broken;
+        facts.push_back(count("broken joints, last row",
+                              std::ssize(broken) - std::ranges::count(broken, std::uint8_t{0})));
+    }
     return facts;
 }
 

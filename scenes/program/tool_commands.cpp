@@ -44,7 +44,7 @@ Json to_json(const ExportReport& report, const CommandLine& line) {
 }  // namespace
 
 void plot_command(const CommandLine& line) {
-    const bool is_new = plot(line.file, line.output, line.overwrite);
+    const bool is_new = plot(line.file, line.output, line.joints, line.overwrite);
     if (line.json)
         put_json({{"file", line.output.string()}, {"written", is_new}});
     else

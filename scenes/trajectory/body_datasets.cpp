@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "scenes/load/effective.hpp"
+#include "scenes/trajectory/entry_datasets.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 
 namespace tesserae::scenes {
@@ -16,9 +17,6 @@ using hdf5::checked;
 using hdf5::Handle;
 
 constexpr const char* kName = "name";
-
-/// Bytes of a chunk, and of what is in memory at once, usual 1 MiB.
-constexpr std::uint64_t kDescriptionChunkBytes = 1 << 20;
 
 std::string size_text(const Shape& shape) {
     std::string text;
@@ -46,25 +44,6 @@ std::size_t longest_name(const BodyDescriptions& bodies) {
     std::size_t most = 1;
     for (const NamedBodies& named : bodies.names) most = std::max(most, named.name.size());
     return most;
-}
-
-/// A dataset of one entry a body, filled piece by piece.
-/// @param name   empty: nothing leads to it yet
-/// @param copy   writes the entry of a body, `bytes` long, over zeros; called in the bodies' order
-template <class Copy>
-Handle create_entries(hid_t group, const std::string& name, hid_t type, std::size_t bytes,
-                      std::uint64_t bodies, Copy&& copy) {
-    const std::uint64_t chunk = std::clamp<std::uint64_t>(
-        bodies, 1, std::max<std::uint64_t>(1, kDescriptionChunkBytes / bytes));
-    Handle dataset = hdf5::create_growing(group, name, type, {bodies}, {chunk}, true);
-    std::string piece;
-    for (std::uint64_t begin = 0; begin < bodies; begin += chunk) {
-        const std::uint64_t count = std::min(chunk, bodies - begin);
-        piece.assign(count * bytes, '\0');
-        for (std::uint64_t i = 0; i < count; ++i) copy(begin + i, piece.data() + i * bytes);
-        hdf5::write_rows(dataset, begin, count, type, piece.data());
-    }
-    return dataset;
 }
 
 /// A text of each body's shape. Bodies of a lattice, one after another, are of one type: only the

@@ -14,9 +14,9 @@ constexpr std::size_t kImpulseBytes = 3 * 4 + 8 + 4 * 4;
 /// Of each, where there is rolling friction; files of before there was have none.
 constexpr std::size_t kAngularBytes = 6 * 8;
 constexpr std::size_t kBodyBytes = 4 + 8;  ///< of what sleeping remembers
-constexpr std::size_t kJointBytes = 10 * 8;
-/// Part of the number of manifolds if a number of joints follows it: files without joints are as
-/// they were before there were any.
+constexpr std::size_t kJointPartBytes = 10 * 8;
+/// Part of the number of manifolds if the numbers of joints' parts and of bytes that tell which
+/// joints are broken follow it: files without joints are as they were before there were any.
 constexpr std::uint64_t kHasJoints = std::uint64_t{1} << 63;
 constexpr std::size_t kManifoldBytes = 2 * 4 + 12 * 8;
 /// Rows, first, hash, step, numbers of impulses, of bodies and of manifolds.
@@ -79,7 +79,9 @@ std::string to_bytes(const ResumeRecord& record) {
     bytes.reserve(kFrontBytes + kFixedBytes + record.memory.impulses.size() * kImpulseBytes +
                   record.memory.angular_impulses.size() * kAngularBytes +
                   record.memory.asleep.size() * kBodyBytes + manifolds * kManifoldBytes +
-                  sizeof(std::uint64_t) + record.memory.joint_impulses.size() * kJointBytes);
+                  2 * sizeof(std::uint64_t) +
+                  record.memory.joint_impulses.size() * kJointPartBytes +
+                  record.memory.broken.size());
     bytes.resize(kFrontBytes);
     put(bytes, record.rows);
     put(bytes, record.first);
@@ -91,9 +93,10 @@ std::string to_bytes(const ResumeRecord& record) {
                memory.angular_impulses.size() == memory.impulses.size());
     put(bytes, static_cast<std::uint64_t>(memory.impulses.size()));
     put(bytes, static_cast<std::uint64_t>(memory.asleep.size()));
-    const std::uint64_t joints = memory.joint_impulses.size();
-    put(bytes, manifolds | (joints > 0 ? kHasJoints : 0));
-    if (joints > 0) put(bytes, joints);
+    const std::uint64_t parts = memory.joint_impulses.size(), broken = memory.broken.size();
+    const bool has_joints = parts > 0 || broken > 0;
+    put(bytes, manifolds | (has_joints ? kHasJoints : 0));
+    if (has_joints) put(bytes, parts), put(bytes, broken);
     for (const KeptImpulse& impulse : memory.impulses) {
         put(bytes, impulse.a);
         put(bytes, impulse.b);
@@ -106,6 +109,7 @@ std::string to_bytes(const ResumeRecord& record) {
     for (const KeptManifolds& list : memory.kept)
         for (const auto& manifold : list) put(bytes, *manifold);
     for (const Wrench& impulse : memory.joint_impulses) put(bytes, impulse);
+    for (const std::uint8_t is_broken : memory.broken) put(bytes, is_broken);
     for (const Bivector& impulse : memory.angular_impulses) put(bytes, impulse);
     // In one string, whose front is known last: the record may be as large as what it saves.
     const std::string_view body = std::string_view(bytes).substr(kFrontBytes);
@@ -127,7 +131,7 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     if (hash_of(bytes) != hash) return std::nullopt;
 
     ResumeRecord record;
-    std::uint64_t impulses = 0, bodies = 0, manifolds = 0, joints = 0;
+    std::uint64_t impulses = 0, bodies = 0, manifolds = 0, parts = 0, broken = 0;
     take(bytes, record.rows);
     take(bytes, record.first);
     take(bytes, record.hash);
@@ -137,14 +141,16 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
     take(bytes, manifolds);
     if ((manifolds & kHasJoints) != 0) {
         manifolds &= ~kHasJoints;
-        if (bytes.size() < sizeof joints) return std::nullopt;
-        take(bytes, joints);
+        if (bytes.size() < sizeof parts + sizeof broken) return std::nullopt;
+        take(bytes, parts);
+        take(bytes, broken);
     }
     if (impulses > bytes.size() / kImpulseBytes || bodies > bytes.size() / kBodyBytes ||
-        manifolds > bytes.size() / kManifoldBytes || joints > bytes.size() / kJointBytes)
+        manifolds > bytes.size() / kManifoldBytes || parts > bytes.size() / kJointPartBytes ||
+        broken > bytes.size())
         return std::nullopt;
     const std::uint64_t plain = impulses * kImpulseBytes + bodies * kBodyBytes +
-                                manifolds * kManifoldBytes + joints * kJointBytes;
+                                manifolds * kManifoldBytes + parts * kJointPartBytes + broken;
     const bool has_angular = bytes.size() != plain;
     const bool fits = bytes.size() == plain + (has_angular ? impulses * kAngularBytes : 0);
     if (!fits || record.first >= record.rows) return std::nullopt;
@@ -168,8 +174,10 @@ std::optional<ResumeRecord> to_record(std::string_view bytes) {
         take(bytes, manifold);
         record.memory.kept[0].push_back(std::make_shared<KeptManifold>(manifold));
     }
-    record.memory.joint_impulses.resize(joints);
+    record.memory.joint_impulses.resize(parts);
     for (Wrench& impulse : record.memory.joint_impulses) take(bytes, impulse);
+    record.memory.broken.resize(broken);
+    for (std::uint8_t& is_broken : record.memory.broken) take(bytes, is_broken);
     if (has_angular) record.memory.angular_impulses.resize(impulses);
     for (Bivector& impulse : record.memory.angular_impulses) take(bytes, impulse);
     return record;
@@ -189,6 +197,11 @@ bool is_of_bodies(const StepMemory& memory, std::uint64_t bodies) {
            (memory.asleep.empty() || memory.asleep.size() == bodies);
 }
 
+bool is_of_joints(const StepMemory& memory, std::uint64_t joints, std::uint64_t parts) {
+    return (memory.joint_impulses.empty() || memory.joint_impulses.size() == parts) &&
+           (memory.broken.empty() || memory.broken.size() == joints);
+}
+
 std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& before,
                                            const StepFacts& facts, const Bodies& bodies) {
     std::string parts;
@@ -202,6 +215,11 @@ std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& b
     for (std::size_t i = 0; i < arrays.size(); ++i)
         put(parts, hash_of({reinterpret_cast<const char*>(arrays[i]),
                             bodies.size() * kStateElements[i].width * sizeof(double)}));
+    const auto of_joints = joint_values(facts.joints);
+    const std::size_t joints = facts.joints.broken.size();
+    for (std::size_t i = 0; joints > 0 && i < of_joints.size(); ++i)
+        put(parts, hash_of({static_cast<const char*>(of_joints[i]),
+                            joints * bytes_of(kJointElements[i])}));
     return hash_of(parts);
 }
 

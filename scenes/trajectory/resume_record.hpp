@@ -27,6 +27,10 @@ std::optional<ResumeRecord> to_record(std::string_view bytes);
 /// many: a step looks them up without another check.
 bool is_of_bodies(const StepMemory& memory, std::uint64_t bodies);
 
+/// Whether what the memory has of every joint, and of every part of one, is of so many: see core's
+/// Joints. Before the first step it has nothing.
+bool is_of_joints(const StepMemory& memory, std::uint64_t joints, std::uint64_t parts);
+
 /// The hash of a run of rows, from that of the rows before and one row more.
 std::array<std::uint64_t, 2> hash_with_row(const std::array<std::uint64_t, 2>& before,
                                            const StepFacts& facts, const Bodies& bodies);

@@ -26,8 +26,17 @@ struct BodyDescriptions {
 /// Bytes that a file takes to describe a body, before compression.
 std::uint64_t description_bytes(const BodyDescriptions& bodies);
 
+/// What a trajectory says of a joint, beside what it does.
+struct JointDescription {
+    std::string name;
+    std::string unit;  ///< of its position: "m", "deg"; empty: it has none
+
+    friend bool operator==(const JointDescription&, const JointDescription&) = default;
+};
+
 /// What a trajectory says of itself. Only `motion_hash`, `motion_version`, `bodies`,
-/// `steps_per_second` and `store_every` decide whether a file can be continued.
+/// the number of joints, `steps_per_second` and `store_every` decide whether a file can be
+/// continued.
 struct TrajectoryHeader {
     std::string scene_name, source, effective, hash, motion_hash;
     std::string creator = "tesserae";  ///< of the file; that of view's own: "tesserae view"
@@ -40,6 +49,19 @@ struct TrajectoryHeader {
     std::optional<std::uint64_t> last_step;
     int motion_version = 1;      ///< by which bodies were moved; 1 in files that do not say it
     BodyDescriptions described;  ///< of all bodies, for the writer; a reader leaves it empty
+    std::vector<JointDescription> joints;  ///< of all joints, in the scene's order
+    std::uint64_t joint_parts = 0;  ///< see core's Joints; for the writer; a reader leaves it 0
+};
+
+/// What a stored step tells of every joint, in the scene's order; all lists are empty where a scene
+/// has no joints.
+struct JointFacts {
+    std::vector<double> impulse;          ///< size of what acts in the step that led here [N s]
+    std::vector<double> angular_impulse;  ///< and of its moment about the anchor [N m s]
+    std::vector<double> error;            ///< how far held points are apart [m]
+    std::vector<double> angular_error;    ///< by what angle held directions are off [deg]
+    std::vector<double> position;  ///< of the one free coordinate [m, deg]; NaN if it has not one
+    std::vector<std::uint8_t> broken;  ///< 1 if it is
 };
 
 /// What a stored step is besides the bodies' states.
@@ -50,6 +72,7 @@ struct StepFacts {
     double kinetic_energy = 0, potential_energy = 0;  ///< [J]
     Vec4 momentum = Vec4::Zero();                     ///< [kg m/s]
     Bivector angular_momentum;                        ///< about the origin [kg m^2/s]
+    JointFacts joints;
 };
 
 /// Writes FILE.h5.partial row by row, FILE.h5 once finish()ed. The bytes of every dataset are a
@@ -134,8 +157,11 @@ class TrajectoryReader {
     /// Of one body, without reading the others.
     Vec4 position(std::uint64_t row, BodyId body) const;
 
-    /// All that was appended besides the states, of every row.
+    /// All that was appended besides the states and what is told of joints, of every row.
     std::vector<StepFacts> facts() const;
+
+    /// What a row tells of all joints.
+    JointFacts joints(std::uint64_t row) const;
 
   private:
     struct File;

@@ -27,6 +27,8 @@ static_assert(sizeof(Vec4) == 32 && sizeof(Rotor) == 64 && sizeof(Bivector) == 4
 
 constexpr const char* kScene = "/parameters/scene";
 constexpr const char *kMotionVersionName = "motion_version", *kLastStepName = "last_step";
+/// The number of joints; none where there are no joints.
+constexpr const char* kJointsName = "joints";
 
 /// Bytes of a chunk of states, usual 1 MiB (HDF5's chunk cache holds one). A chunk never spans
 /// rows: compressed chunks that grow are moved, and their old place, which the last flush still
@@ -118,12 +120,15 @@ void create_observables(const Handle& file) {
 }
 
 /// All elements were stored at the same steps: H5MD has them share the datasets.
-void share_steps(const Handle& file) {
+void share_steps(const Handle& file, bool has_joints) {
     const std::string from = element_path("position");
     std::vector<std::string> to;
     for (std::size_t i = 1; i < kStateElements.size(); ++i)
         to.push_back(element_path(kStateElements[i].name));
     for (const Observable& o : kObservables) to.push_back(observable_path(o.name));
+    if (has_joints)
+        for (const JointElement& element : kJointElements)
+            to.push_back(joint_element_path(element));
     for (const std::string& element : to)
         for (const char* name : {"/step", "/time"})
             hdf5::hard_link(file.get(), from + name, element + name);
@@ -141,6 +146,9 @@ void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
                             &*header.last_step);
     hdf5::add_attribute(scene.get(), kMotionVersionName, H5T_STD_I32LE, H5T_NATIVE_INT, {},
                         &header.motion_version);
+    if (const std::uint64_t joints = header.joints.size(); joints > 0)
+        hdf5::add_attribute(scene.get(), kJointsName, H5T_STD_I64LE, H5T_NATIVE_UINT64, {},
+                            &joints);
     const std::pair<const char*, const std::string*> texts[] = {
         {"name", &header.scene_name},
         {"text", &header.source},
@@ -150,22 +158,28 @@ void fill_scene(const Handle& scene, const TrajectoryHeader& header) {
     for (const auto& [name, text] : texts) hdf5::create_text(scene.get(), name, *text);
 }
 
-/// Opens a dataset of 8-byte numbers whose axes after the first are as given.
-Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, const Extent& row,
-                    std::uint64_t file_bytes, Opened opened) {
+/// Opens a dataset of numbers of so many bytes whose axes after the first are as given.
+Handle open_numbers(hid_t file, const std::string& name, H5T_class_t kind, std::size_t bytes,
+                    const Extent& row, std::uint64_t file_bytes, Opened opened) {
     const auto require = [&](bool good, const char* what) {
         if (!good) throw hdf5::Failure(name + ": " + what);
     };
     Handle dataset = hdf5::open_dataset(file, name);
     const Handle type(H5Dget_type(dataset.get()), H5Tclose);
-    require(H5Tget_class(type.get()) == kind && H5Tget_size(type.get()) == 8,
-            kind == H5T_FLOAT ? "is not of 64-bit reals" : "is not of 64-bit integers");
+    require(H5Tget_class(type.get()) == kind && H5Tget_size(type.get()) == bytes,
+            kind == H5T_FLOAT ? "is not of 64-bit reals"
+            : bytes == 1      ? "is not of bytes"
+                              : "is not of 64-bit integers");
     const Extent extent = hdf5::extent_of(dataset);
     require(extent.size() == row.size() + 1 && std::equal(row.begin(), row.end(), ++extent.begin()),
             "has another shape");
     const DatasetStorage storage = checked_storage(dataset, name, file_bytes);
     require(opened == Opened::kToRead || !storage.chunk.empty(), "is not stored in chunks");
     return dataset;
+}
+
+hid_t memory_type(const JointElement& element) {
+    return element.is_byte ? H5T_NATIVE_UINT8 : H5T_NATIVE_DOUBLE;
 }
 
 template <class Pointer, class Facts>
@@ -181,6 +195,8 @@ std::vector<const Handle*> TrajectoryDatasets::all() const {
     std::vector<const Handle*> all = {&step, &time};
     for (const Handle& dataset : state) all.push_back(&dataset);
     for (const Handle& dataset : observable) all.push_back(&dataset);
+    if (joints > 0)
+        for (const Handle& dataset : joint) all.push_back(&dataset);
     return all;
 }
 
@@ -221,7 +237,8 @@ void create_layout(const Handle& file, const TrajectoryHeader& header) {
     create_h5md(file, header.creator, header.program_version);
     create_bodies(file, header);
     create_observables(file);
-    share_steps(file);
+    if (!header.joints.empty()) create_joint_datasets(file, header.joints);
+    share_steps(file, !header.joints.empty());
     hdf5::create_group(file.get(), "/parameters");
     // The group that goes at the end is named first: see trajectory_driver.hpp.
     hdf5::create_group(file.get(), kResume);
@@ -237,23 +254,30 @@ void replace_scene(const Handle& file, const TrajectoryHeader& header) {
     checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
 }
 
-TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies, std::uint64_t file_bytes,
-                                 Opened opened) {
+TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies, std::uint64_t joints,
+                                 std::uint64_t file_bytes, Opened opened) {
     const auto column = [&](const std::string& name, H5T_class_t kind) {
-        return open_numbers(file.get(), name, kind, {}, file_bytes, opened);
+        return open_numbers(file.get(), name, kind, 8, {}, file_bytes, opened);
     };
     TrajectoryDatasets data;
+    data.joints = joints;
     data.step = column(element_path("position") + "/step", H5T_INTEGER);
     data.time = column(element_path("position") + "/time", H5T_FLOAT);
     for (std::size_t i = 0; i < kStateElements.size(); ++i)
         data.state[i] =
-            open_numbers(file.get(), element_path(kStateElements[i].name) + "/value", H5T_FLOAT,
+            open_numbers(file.get(), element_path(kStateElements[i].name) + "/value", H5T_FLOAT, 8,
                          {bodies, kStateElements[i].width}, file_bytes, opened);
     for (std::size_t i = 0; i < kObservables.size(); ++i) {
         const Observable& o = kObservables[i];
         data.observable[i] = open_numbers(
-            file.get(), observable_path(o.name) + "/value", o.is_count ? H5T_INTEGER : H5T_FLOAT,
+            file.get(), observable_path(o.name) + "/value", o.is_count ? H5T_INTEGER : H5T_FLOAT, 8,
             o.width > 1 ? Extent{o.width} : Extent{}, file_bytes, opened);
+    }
+    for (std::size_t i = 0; joints > 0 && i < kJointElements.size(); ++i) {
+        const JointElement& element = kJointElements[i];
+        data.joint[i] = open_numbers(file.get(), joint_element_path(element) + "/value",
+                                     element.is_byte ? H5T_INTEGER : H5T_FLOAT, bytes_of(element),
+                                     {joints}, file_bytes, opened);
     }
     return data;
 }
@@ -281,6 +305,11 @@ TrajectoryHeader read_header(const Handle& file, std::uint64_t file_bytes) {
         text != header.effective && with_solver(text) == header.effective) {
         header.motion_hash = motion_hash(text, header.motion_version);
         header.effective = std::move(text);
+    }
+    if (hdf5::has_attribute(scene.get(), kJointsName)) {
+        std::uint64_t joints = 0;
+        hdf5::read_attribute(scene.get(), kJointsName, H5T_NATIVE_UINT64, &joints);
+        if (joints > 0) header.joints = read_joint_descriptions(file, joints, file_bytes);
     }
     if (header.motion_version < 1)
         throw hdf5::Failure(std::string(kMotionVersionName) + ": is not a version from 1 on");
@@ -340,6 +369,9 @@ void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFact
         hdf5::write_rows(data.observable[i], row, 1,
                          kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
                          values[i]);
+    const auto of_joints = joint_values(facts.joints);
+    for (std::size_t i = 0; data.joints > 0 && i < of_joints.size(); ++i)
+        hdf5::write_rows(data.joint[i], row, 1, memory_type(kJointElements[i]), of_joints[i]);
     const auto arrays = state_arrays(bodies);
     if (bodies.size() == 0) return;
     for (std::size_t i = 0; i < arrays.size(); ++i)
@@ -354,10 +386,19 @@ void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& fact
         hdf5::read_rows(data.observable[i], row, 1,
                         kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
                         values[i]);
+    facts.joints = read_joints(data, row);
     const auto arrays = state_arrays(bodies);
     if (bodies.size() == 0) return;
     for (std::size_t i = 0; i < arrays.size(); ++i)
         hdf5::read_rows(data.state[i], row, 1, H5T_NATIVE_DOUBLE, arrays[i]);
+}
+
+JointFacts read_joints(const TrajectoryDatasets& data, std::uint64_t row) {
+    JointFacts facts = room_for_joints(data.joints);
+    const auto values = joint_values(facts);
+    for (std::size_t i = 0; data.joints > 0 && i < values.size(); ++i)
+        hdf5::read_rows(data.joint[i], row, 1, memory_type(kJointElements[i]), values[i]);
+    return facts;
 }
 
 }  // namespace tesserae::scenes

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "scenes/trajectory/hdf5.hpp"
+#include "scenes/trajectory/joint_datasets.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 
 // Where a trajectory's parts lie in its file, for the writer and the reader.
@@ -54,6 +55,8 @@ struct TrajectoryDatasets {
     hdf5::Handle step, time;
     std::array<hdf5::Handle, kStateElements.size()> state;     ///< in that order
     std::array<hdf5::Handle, kObservables.size()> observable;  ///< in that order
+    std::array<hdf5::Handle, kJointElements.size()> joint;     ///< in that order; none: no joints
+    std::uint64_t joints = 0;
 
     std::vector<const hdf5::Handle*> all() const;
     /// Rows that every dataset has.
@@ -85,7 +88,7 @@ void replace_scene(const hdf5::Handle& file, const TrajectoryHeader& header);
 enum class Opened { kToRead, kToGrow };
 /// @throws hdf5::Failure   a shape, type, size or filter is not that of a trajectory
 TrajectoryDatasets open_datasets(const hdf5::Handle& file, std::uint64_t bodies,
-                                 std::uint64_t file_bytes, Opened opened);
+                                 std::uint64_t joints, std::uint64_t file_bytes, Opened opened);
 TrajectoryHeader read_header(const hdf5::Handle& file, std::uint64_t file_bytes);
 
 /// Length of a file that begins like a whole one of HDF5's default format: signature, version 0,
@@ -99,5 +102,6 @@ Bodies room_for(std::uint64_t bodies);
 void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFacts& facts,
                const Bodies& bodies);
 void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& facts, Bodies& bodies);
+JointFacts read_joints(const TrajectoryDatasets& data, std::uint64_t row);
 
 }  // namespace tesserae::scenes

@@ -45,7 +45,7 @@ void TrajectoryReader::File::open() {
     const std::uint64_t bytes = checked_file_bytes(path);
     file = hdf5::open_file(path, false);
     header = read_header(file, bytes);
-    data = open_datasets(file, header.bodies, bytes, Opened::kToRead);
+    data = open_datasets(file, header.bodies, header.joints.size(), bytes, Opened::kToRead);
     const std::uint64_t rows = data.whole_rows();
     steps.resize(rows);
     times.resize(rows);
@@ -131,6 +131,13 @@ std::vector<StepFacts> TrajectoryReader::facts() const {
             std::memcpy(observable_values(facts[i])[o], column.data() + i * bytes, bytes);
     }
     return facts;
+}
+
+JointFacts TrajectoryReader::joints(std::uint64_t row) const {
+    TSR_ASSERT(row < rows());
+    JointFacts joints;
+    file_->reading([&] { joints = read_joints(file_->data, row); });
+    return joints;
 }
 
 }  // namespace tesserae::scenes

@@ -120,6 +120,8 @@ std::optional<std::string> TrajectoryWriter::File::other_motion(
     }
     if (there.bodies != header.bodies)
         return fmt::format("has {} bodies, here {}", there.bodies, header.bodies);
+    if (there.joints.size() != header.joints.size())
+        return fmt::format("has {} joints, here {}", there.joints.size(), header.joints.size());
     if (there.steps_per_second != header.steps_per_second)
         return fmt::format("has {} steps per second, here {}", there.steps_per_second,
                            header.steps_per_second);
@@ -173,7 +175,9 @@ void TrajectoryWriter::File::copy_finished() {
 /// The rows since the flush before are those that the record was made of.
 bool TrajectoryWriter::File::is_good(const ResumeRecord& candidate) const {
     if (candidate.rows > data.whole_rows()) return false;
-    if (!is_of_bodies(candidate.memory, header.bodies)) return false;
+    if (!is_of_bodies(candidate.memory, header.bodies) ||
+        !is_of_joints(candidate.memory, header.joints.size(), header.joint_parts))
+        return false;
     Bodies bodies = room_for(header.bodies);
     std::array<std::uint64_t, 2> hash = {};
     StepFacts facts;
@@ -216,7 +220,7 @@ TrajectoryHeader TrajectoryWriter::File::open_leftover() {
     file = hdf5::open_file(lock.partial(), true);
     TrajectoryHeader there = read_header(file, file_bytes);
     if (other_motion(there)) return there;
-    data = open_datasets(file, header.bodies, file_bytes, Opened::kToGrow);
+    data = open_datasets(file, header.bodies, header.joints.size(), file_bytes, Opened::kToGrow);
     if (!find_record(file_bytes)) throw hdf5::Failure("holds no row that can be continued from");
     rows = record.rows;
     return there;
@@ -250,7 +254,8 @@ bool TrajectoryWriter::File::take_leftover(bool overwrite) {
                             return hdf5::extent_of(*dataset)[0] != rows;
                         });
     const bool other_texts = there.source != header.source || there.effective != header.effective ||
-                             there.hash != header.hash || there.scene_name != header.scene_name;
+                             there.hash != header.hash || there.scene_name != header.scene_name ||
+                             there.joints != header.joints;
     if (!longer && !other_texts) return true;
     // The datasets are shortened first, and in a flush of their own: what they free lies where the
     // file on disk still has something.
@@ -261,6 +266,10 @@ bool TrajectoryWriter::File::take_leftover(bool overwrite) {
     // again.
     if (!same_body_names(there.effective, header.effective)) {
         replace_names(file, header.described);
+        reopen();
+    }
+    if (there.joints != header.joints) {
+        replace_joint_names(file, header.joints);
         reopen();
     }
     if (other_texts) {
@@ -301,7 +310,8 @@ void TrajectoryWriter::File::start() {
     create_slots();
     checkpoint = open_record(file, kCheckpoint);
     hdf5::checked(H5Fflush(file.get(), H5F_SCOPE_LOCAL));
-    data = open_datasets(file, header.bodies, fs::file_size(lock.partial()), Opened::kToGrow);
+    data = open_datasets(file, header.bodies, header.joints.size(), fs::file_size(lock.partial()),
+                         Opened::kToGrow);
     rows = 0;
     record = {};
     next_slot = 0;
@@ -405,6 +415,7 @@ void TrajectoryWriter::append(const StepFacts& facts, const Bodies& bodies,
                               const StepMemory& memory) {
     File& f = *file_;
     TSR_ASSERT(bodies.size() == f.header.bodies);
+    TSR_ASSERT(facts.joints.broken.size() == f.header.joints.size());
     TSR_ASSERT(f.rows < f.steps.size() && facts.step == f.steps[f.rows]);
     f.writing([&] {
         f.flushed = false;

@@ -38,7 +38,7 @@ struct End {
 };
 
 End end_of(const Scene& scene, int steps) {
-    parallel::ParallelWorld world(scene.bodies, *scene.physics);
+    parallel::ParallelWorld world(make_simulation(scene.bodies, *scene.physics, scene.joints));
     parallel::Threads(2).run([&] {
         for (int i = 0; i < steps; ++i) world.step(1 / scene.physics->steps_per_second);
     });
@@ -84,6 +84,13 @@ TEST_F(Golden, LargeIslandsMoveAsEver) {
     expect("pile", 1000, 200, substeps, "2f4f7025a6a197bbcb5991c46f3f9c85");
     expect("pyramid", 200, 60, {}, "7eb7702e9bcadfe10c10124c3aae0d5d");
     expect("pyramid", 200, 60, substeps, "2d9be4d0c445c68bd2633dd68057d5d1");
+}
+
+/// Joints as a block, in double and in colours.
+TEST_F(Golden, JointsMoveAsEver) {
+    EXPECT_EQ(end_of_generated("chain", 40, 240).hash, "569bcc0013a031a44ef0accf6c7508b5");
+    EXPECT_EQ(end_of_generated("bridge", 70, 120).hash, "83ff58819a03fc17923dc64ce701b88d");
+    EXPECT_EQ(end_of_generated("grid", 150, 120).hash, "b431b058988dd61c07cccbc263e85f2e");
 }
 
 /// What `tesserae hash` says of a path.

@@ -28,8 +28,8 @@ RowMatrix inverse_of(const RowMatrix& matrix) {
 
 BodyMotion motion_by(const Simulation& simulation, const StepData& step, BodyId id, const Vec4& r,
                      const Wrench& wrench) {
+    if (!simulation.is_movable(id)) return {};
     const TypeProperties& type = simulation.type_of(id);
-    if (!type.movable) return {};
     BodyMotion motion{type.inverse_mass * wrench.impulse, {}};
     if (simulation.needs.turning)
         motion.angular_velocity =

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "core/body_id.hpp"
 #include "core/dynamics/constraints/wrench.hpp"
@@ -18,6 +19,9 @@ struct BodyMotion;
 struct Simulation;
 struct StepData;
 
+/// The number that stands for the world, to which a body may be joined. It never moves.
+constexpr BodyId kWorld = std::numeric_limits<BodyId>::max();
+
 /// The most rows of a constraint: two bodies move relative to each other in 4 + 6 ways.
 constexpr int kMostRows = 10;
 
@@ -30,7 +34,7 @@ enum class ImpulseSet : std::uint8_t {
     kAll,       ///< all impulses: a joint
     kHalfLine,  ///< each row's is at least 0: a contact, a limit
     kBall,      ///< together at most `most` long: friction, rolling, twisting
-    kBox,       ///< each row's is at most `most` in size: a motor
+    kBox,       ///< each row's is at most `most` in size: a motor, a spring
 };
 
 /// A constraint of the motion of body b relative to body a, as the solver sees it. Each row is a
@@ -55,6 +59,9 @@ struct Constraint {
     RowVector last_impulse, direction;       ///< see conjugate.hpp
     std::uint32_t place_a = 0, place_b = 0;  ///< where the solver finds the bodies' motion
     std::uint32_t joint = 0;                 ///< number of the joint that it is of
+    std::uint32_t part = 0;                  ///< and which part of all joints, see Joints
+    bool in_block = false;                   ///< it is solved by a JointBlock, not by sweeps
+    bool starts_anew = false;                ///< its load has no warm start
 
     /// Returns whether it holds bodies whatever it takes. Only then does it act in an impact, and
     /// in a position correction: the impulse of a force that is limited is nothing there.
@@ -71,12 +78,6 @@ RowVector row_velocities(const Constraint& constraint, const BodyMotion& a, cons
 Wrench wrench_of(const Constraint& constraint, const RowVector& impulses);
 /// Returns the rows' impulses nearest to a wrench that the set allows.
 RowVector impulses_of(const Constraint& constraint, const Wrench& wrench);
-
-/// The RowErrors tell where the rows of a joint are, against where it holds them.
-struct RowErrors {
-    RowVector distance;      ///< [m, rad]
-    RowVector acceleration;  ///< of this by the bodies' present turning [m/s^2, rad/s^2]
-};
 
 /// Returns the changes of the motion of a and b by impulses of the rows.
 std::array<BodyMotion, 2> motion_by(const Simulation& simulation, const StepData& step,

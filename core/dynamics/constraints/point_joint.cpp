@@ -1,25 +1,23 @@
 #include "core/dynamics/constraints/point_joint.hpp"
 
-#include "core/dynamics/step/step_data.hpp"
-
 namespace tesserae {
 
-RowErrors pose(const PointJoint& joint, const StepData& step, Constraint& constraint) {
-    const BodyId a = constraint.a, b = constraint.b;
-    const Vec4 r_a = to_matrix(step.rotor[a]) * joint.on_a;
-    const Vec4 r_b = to_matrix(step.rotor[b]) * joint.on_b;
-    const Vec4 on_a = step.position[a] + r_a, on_b = step.position[b] + r_b;
+RowVector values_of(const PointJoint& joint, const JointedBody& a, const JointedBody& b,
+                    const Rotor&) {
+    return (b.position + rotate(b.rotor, joint.on_b)) - (a.position + rotate(a.rotor, joint.on_a));
+}
+
+Coordinates coordinates_of(const PointJoint& joint, const JointedBody& a, const JointedBody& b) {
+    Coordinates all;
+    all.size = 4;
+    const Vec4 on_a = a.position + rotate(a.rotor, joint.on_a);
+    const Vec4 on_b = b.position + rotate(b.rotor, joint.on_b);
+    all.values = on_b - on_a;
     // Both impulses act at one place: else they would turn the bodies together.
-    const Vec4 anchor = 0.5 * (on_a + on_b);
-    constraint.r_a = anchor - step.position[a];
-    constraint.r_b = anchor - step.position[b];
-    constraint.size = 4;
+    all.anchor = 0.5 * (on_a + on_b);
     for (int axis = 0; axis < 4; ++axis)
-        constraint.rows[static_cast<std::size_t>(axis)] = {Vec4::Unit(axis), {}};
-    const auto bend = [&](BodyId id, const Vec4& r) {
-        return velocity_at(step.angular_velocity[id], velocity_at(step.angular_velocity[id], r));
-    };
-    return {on_b - on_a, bend(b, r_b) - bend(a, r_a)};
+        all.rows[static_cast<std::size_t>(axis)] = {Vec4::Unit(axis), {}};
+    return all;
 }
 
 }  // namespace tesserae

@@ -1,16 +1,19 @@
 #pragma once
 
-#include "core/algebra/vector.hpp"
-#include "core/dynamics/constraints/constraint.hpp"
+#include "core/dynamics/constraints/coordinates.hpp"
 
 namespace tesserae {
 
-/// A joint that holds a point of one body at a point of the other. Both turn freely about it.
+/// Its coordinates are where a point of body b is from a point of body a, along the world's axes. A
+/// joint that holds all four lets both bodies turn freely about the point.
 struct PointJoint {
+    static constexpr int kSize = 4;  ///< number of coordinates
+
     Vec4 on_a = Vec4::Zero(), on_b = Vec4::Zero();  ///< from the centres, in the bodies' axes [m]
 };
 
-/// Sets the rows and anchors of a point joint of a constraint's bodies, at their present poses.
-RowErrors pose(const PointJoint& joint, const StepData& step, Constraint& constraint);
+RowVector values_of(const PointJoint& joint, const JointedBody& a, const JointedBody& b,
+                    const Rotor& near);
+Coordinates coordinates_of(const PointJoint& joint, const JointedBody& a, const JointedBody& b);
 
 }  // namespace tesserae

@@ -126,7 +126,7 @@ void Colouring::end(StepData& step) {
 }
 
 std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, BodyId id) {
-    if (!simulation.type_of(id).movable) return 0;
+    if (!simulation.is_movable(id)) return 0;
     std::uint32_t& place = place_[id];
     if (place == 0) {
         place = static_cast<std::uint32_t>(step.coloured.bodies.size());

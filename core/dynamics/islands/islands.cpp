@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/counting_sort.hpp"
 #include "core/dynamics/solver/conjugate.hpp"
@@ -68,8 +69,8 @@ bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) cons
 /// Joins two bodies if both are movable, the lower root above the higher one.
 /// @return one that is movable
 BodyId IslandBuilder::join(const Simulation& simulation, BodyId a, BodyId b) {
-    if (!simulation.type_of(a).movable) return b;
-    if (!simulation.type_of(b).movable) return a;
+    if (!simulation.is_movable(a)) return b;
+    if (!simulation.is_movable(b)) return a;
     const BodyId p = root_of(a), q = root_of(b);
     parent_[std::max(p, q)] = std::min(p, q);
     return a;
@@ -92,13 +93,11 @@ void IslandBuilder::weigh_islands(const Simulation& simulation, Islands& islands
     least_mass_.assign(count, std::numeric_limits<double>::infinity());
     most_mass_.assign(count, 0);
     floats_.assign(count, {});
-    bodies_.assign(count, 0);
     islands.falling_mass.assign(count, 0);
     for (BodyId id = 0; id < parent_.size(); ++id) {
         const TypeProperties& type = simulation.type_of(id);
         const std::uint32_t island = number_[root_of(id)];
         if (island == kNone || !type.movable) continue;
-        ++bodies_[island];
         FloatRange& floats = floats_[island];
         const int exponent = std::ilogb(type.mass);
         floats.fits &= type.fits_floats;
@@ -138,8 +137,7 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     for (std::size_t i = 0; i < all; ++i) {
         const auto [a, b] = bodies_of(i);
         const std::uint32_t island = number_[member_[i]];
-        if (!simulation.type_of(a).movable || !simulation.type_of(b).movable)
-            islands.held[island] = 1;
+        if (!simulation.is_movable(a) || !simulation.is_movable(b)) islands.held[island] = 1;
         if (i < runs)
             islands.contacts[island] += static_cast<std::uint32_t>(contacts.nth_run(i).size());
         if (i < runs ? !has_conjugates(simulation, a, b)
@@ -158,10 +156,23 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     };
     sort(0, runs, islands.first, islands.runs);
     sort(runs, step.constraints.size(), islands.first_constraint, islands.constraints);
-    islands.direct.assign(count, 0);
-    for (std::uint32_t island = 0; island < count; ++island)
-        islands.direct[island] =
-            !islands.constraints_in(island).empty() && bodies_[island] <= coloured_from_.direct;
+    find_direct(simulation, step);
+}
+
+/// Counts the bodies with joints of every island.
+void IslandBuilder::find_direct(const Simulation& simulation, StepData& step) {
+    Islands& islands = step.islands;
+    islands.direct.assign(islands.size(), 0);
+    if (step.constraints.empty()) return;
+    jointed_.assign(islands.size(), 0);
+    is_jointed_.assign(simulation.bodies.size(), 0);
+    for (const Constraint& c : step.constraints)
+        for (const BodyId id : {c.a, c.b}) {
+            if (!simulation.is_movable(id) || std::exchange(is_jointed_[id], 1) != 0) continue;
+            ++jointed_[number_[root_of(id)]];
+        }
+    for (std::size_t island = 0; island < islands.size(); ++island)
+        islands.direct[island] = jointed_[island] > 0 && jointed_[island] <= coloured_from_.direct;
 }
 
 }  // namespace tesserae

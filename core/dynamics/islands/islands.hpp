@@ -14,7 +14,7 @@ struct ColouredFrom {
     std::uint32_t held = kColouredFrom;      ///< if some body touches one that contacts do not move
     std::uint32_t unequal = 1;               ///< of these, if masses differ by kUnequalMasses
     std::uint32_t free = kFreeColouredFrom;  ///< if nothing holds the island
-    /// The number of bodies up to which an island with joints is not, see JointBlock.
+    /// The number of bodies with joints up to which an island is not, see JointBlock.
     std::size_t direct = BlockCholesky::kMostRows;
 
     ColouredFrom() = default;
@@ -49,6 +49,7 @@ class IslandBuilder {
     std::uint32_t number_islands();
     void weigh_islands(const Simulation& simulation, Islands& islands);
     void sort_by_island(const Simulation& simulation, StepData& step);
+    void find_direct(const Simulation& simulation, StepData& step);
 
     std::vector<BodyId> parent_;  ///< of every body; a root is its island's lowest body
     /// Of every run of contacts, and then of every other constraint: a movable body, then its root.
@@ -56,7 +57,8 @@ class IslandBuilder {
     std::vector<std::uint32_t> number_;           ///< of the island whose root the body is
     std::vector<double> least_mass_, most_mass_;  ///< of every island's bodies [kg]
     std::vector<FloatRange> floats_;              ///< of every island's bodies
-    std::vector<std::uint32_t> bodies_;           ///< number of each island's movable bodies
+    std::vector<std::uint32_t> jointed_;          ///< number of each island's bodies with joints
+    std::vector<std::uint8_t> is_jointed_;        ///< of every body: it is counted there
     Colouring colouring_;
 };
 

@@ -43,6 +43,7 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
         BodyId least = kAwake;
         bool is_supported = false, all_stand = true;
         const auto rests = [&](BodyId id) {
+            if (id == kWorld) return true;
             if (is_driven(simulation, id)) return false;
             if (!simulation.type_of(id).movable) return true;
             least = std::min(least, id);
@@ -55,8 +56,7 @@ void find_islands_at_rest(const Simulation& simulation, StepData& step) {
         if (std::all_of(others.begin(), others.end(),
                         [&](std::uint32_t n) {
                             const Constraint& c = step.constraints[n];
-                            if (!simulation.type_of(c.a).movable ||
-                                !simulation.type_of(c.b).movable)
+                            if (!simulation.is_movable(c.a) || !simulation.is_movable(c.b))
                                 is_supported = true;
                             return rests(c.a) && rests(c.b);
                         }) &&
@@ -126,7 +126,7 @@ void fall_asleep(Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < lowest.size(); ++island) {
         const auto sleep = [&](BodyId a, BodyId b) {
             for (const BodyId id : {a, b})
-                if (simulation.type_of(id).movable) next[id] = lowest[island];
+                if (simulation.is_movable(id)) next[id] = lowest[island];
         };
         for (const std::uint32_t n : step.islands.runs_in(island)) {
             const ContactList::Run run = step.contacts.nth_run(n);

@@ -272,9 +272,7 @@ void ColouredRows<Threads>::keep() {
     for_all_rows(
         island_, threads_, [&](BatchRange some) { keep_round(stage(), some); },
         [&](BatchRange some) { keep_general(stage(), some); },
-        [&](BatchRange some) {
-            if (stage().cause == Cause::kLoad) others_of(stage(), some).keep();
-        });
+        [&](BatchRange some) { others_of(stage(), some).keep(stage().cause); });
 }
 
 template <class Threads>

@@ -14,7 +14,9 @@ class MotionOfState {
   public:
     explicit MotionOfState(StepData& step) : step_(step) {}
 
-    BodyMotion at(std::uint32_t place) const { return motion_of(step_, place); }
+    BodyMotion at(std::uint32_t place) const {
+        return place == kWorld ? BodyMotion{} : motion_of(step_, place);
+    }
     void add(std::uint32_t place, const BodyMotion& change) const {
         step_.velocity[place] += change.velocity;
         step_.angular_velocity[place] += change.angular_velocity;
@@ -48,7 +50,9 @@ class MotionOfChanges {
         record.rest[0] += static_cast<float>(w.yw);
         record.rest[1] += static_cast<float>(w.zw);
     }
-    BodyMotion left_out(BodyId id) const { return motion_of(step_, id); }
+    BodyMotion left_out(BodyId id) const {
+        return id == kWorld ? BodyMotion{} : motion_of(step_, id);
+    }
 
   private:
     StepData& step_;
@@ -65,17 +69,22 @@ class ConstraintRows {
         : simulation_(simulation), step_(step), motions_(step), which_(which) {}
 
     /// Prepares them for a cause, and applies the impulses that they start from. An impact keeps
-    /// the velocities of the rows as they are.
+    /// the velocities of the rows as they are; a limit lets them have all that is left of its way.
     void start(Cause cause) const {
         for_all([&](Constraint& c) {
             const RowVector left_out =
                 row_velocities(c, motions_.left_out(c.a), motions_.left_out(c.b));
             if (cause == Cause::kLoad) {
                 c.aim = c.bias - left_out;
-                c.impulse = impulses_of(c, step_.joint_impulses[c.joint]);
-                apply(c, c.impulse);
+                if (c.starts_anew)
+                    c.impulse.setZero(c.size);
+                else
+                    apply(c, c.impulse = impulses_of(c, step_.joint_impulses[c.part]));
             } else {
-                c.aim = row_velocities(c, motion_of(step_, c.a), motion_of(step_, c.b)) - left_out;
+                const MotionOfState now(step_);
+                c.aim = row_velocities(c, now.left_out(c.a), now.left_out(c.b));
+                if (c.set == ImpulseSet::kHalfLine) c.aim = c.aim.cwiseMin(c.bias.cwiseMin(0));
+                c.aim -= left_out;
                 c.impulse.setZero(c.size);
             }
         });
@@ -88,7 +97,7 @@ class ConstraintRows {
         for (std::size_t i = 0; i < which_.size(); ++i) {
             const std::size_t place = sweep.backward ? which_.size() - 1 - i : i;
             Constraint& c = step_.constraints[which_[place]];
-            if (firm_only && !c.is_firm()) continue;
+            if (c.in_block || (firm_only && !c.is_firm())) continue;
             const RowVector change = solve_rows(c, velocities(c));
             apply(c, change);
             if (sweep.measured)
@@ -116,14 +125,19 @@ class ConstraintRows {
         for_all([&](Constraint& c) { sum += c.compliance * c.impulse.squaredNorm(); });
         return sum;
     }
-    /// Writes the impulses of a load to step.joint_impulses.
-    void keep() const {
-        for_all([&](Constraint& c) { step_.joint_impulses[c.joint] = wrench_of(c, c.impulse); });
+    /// Writes the impulses of a load to step.joint_impulses, and adds all to step.part_sums.
+    void keep(Cause cause) const {
+        for_all([&](Constraint& c) {
+            const Wrench wrench = wrench_of(c, c.impulse);
+            if (cause == Cause::kLoad) step_.joint_impulses[c.part] = wrench;
+            step_.part_sums[c.part].impulse += wrench.impulse;
+            step_.part_sums[c.part].moment += wrench.moment;
+        });
     }
     /// Applies what leads from the present impulses to those of the load.
     void take_correction_back() const {
         for_all([&](Constraint& c) {
-            apply(c, impulses_of(c, step_.joint_impulses[c.joint]) - c.impulse);
+            apply(c, impulses_of(c, step_.joint_impulses[c.part]) - c.impulse);
         });
     }
     /// Makes the changes so far a part of what at() leaves out.
@@ -144,8 +158,8 @@ class ConstraintRows {
     void apply(const Constraint& c, const RowVector& impulses) const {
         const auto [of_a, of_b] = motion_by(simulation_, step_, c, impulses);
         // What contacts do not move may be in many islands, which other threads solve.
-        if (simulation_.type_of(c.a).movable) motions_.add(c.place_a, of_a);
-        if (simulation_.type_of(c.b).movable) motions_.add(c.place_b, of_b);
+        if (simulation_.is_movable(c.a)) motions_.add(c.place_a, of_a);
+        if (simulation_.is_movable(c.b)) motions_.add(c.place_b, of_b);
     }
 
     const Simulation& simulation_;

@@ -4,65 +4,95 @@
 #include <span>
 #include <vector>
 
-#include "core/dynamics/solver/block_cholesky.hpp"
-#include "core/dynamics/step/step_data.hpp"
+#include "core/dynamics/constraints/contact_targets.hpp"
+#include "core/dynamics/solver/motion_roots.hpp"
+#include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
 
-/// All joints of an island of few bodies as one block, which is solved directly. Sweeps take a
-/// joint after the other and need thousands where a light chain bears a heavy load; the block takes
-/// one factor a sub-step, and two or three solutions of it a sweep.
+/// All joints of an island as one block, if they join few bodies, which is solved directly. Sweeps
+/// take a joint after the other and need thousands where a light chain bears a heavy load; the
+/// block takes one factor a sub-step, and two or three solutions of it a sweep.
 ///
 /// The change of the bodies' motion is the least of 1/2 |u|^2 + 1/2 s |J u - left|^2, in the norm
 /// of the kinetic energy, with stiff s; its impulses are s (left - J u). What is left after it is
 /// less by a factor of about 1 + s/m, and it is repeated (method of multipliers: Nocedal and
-/// Wright, "Numerical optimization", 2006, 17.3).
+/// Wright, "Numerical optimization", 2006, 17.3). A spring gives way by its compliance: its s is
+/// less.
+///
+/// A light body between strong pulls swings across them faster than the step can follow. Where it
+/// would, its inertia gets the part h^2/4 K, with K the moment of the pulls by an angle (geometric
+/// stiffness: M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34, 2015): the
+/// moments are then those at the mean of the sub-step's ends, and the swing is slower, not wilder.
+///
+/// Limits, and motors whose force has a bound, are solved one after the other. The block answers to
+/// each: what it holds stays held.
 class JointBlock {
   public:
     /// Prepares the block for an island whose constraints are posed.
-    /// @param bodies        the island's movable bodies, ascending
     /// @param constraints   numbers in step.constraints
-    /// @return whether it is one to solve so: few blocks have to be eliminated, and all constraints
-    ///         hold whatever it takes
-    bool begin(const Simulation& simulation, const StepData& step, std::span<const BodyId> bodies,
-               std::span<const std::uint32_t> constraints);
+    /// @return whether it is one to solve so: few blocks have to be eliminated. Then
+    ///         Constraint::in_block is set.
+    bool begin(const Simulation& simulation, StepData& step,
+               std::span<const std::uint32_t> constraints, Cause cause);
 
     /// Solves all rows at the bodies' present motion, and applies what their impulses change.
     /// @return the largest change of a row's velocity [m/s, rad/s]
-    double sweep(const Simulation& simulation, StepData& step);
+    double sweep(const Simulation& simulation, StepData& step, Pass pass);
+
+    /// Returns whether bodies have got geometric stiffness.
+    bool has_stiffness() const { return !stiffness_.empty(); }
 
   private:
     using Part = BlockCholesky::Part;
 
-    /// The roots of a body's inverse mass and inverse inertia: motions are in units of these.
-    struct Roots {
-        double mass = 0;
-        BivectorMap inertia = BivectorMap::Zero();
-    };
-    /// One row: what its unit impulse does to both bodies.
+    using Angles = Eigen::Matrix<double, 6, 6>;
+
+    /// One row of a constraint: what its unit impulse does to both bodies.
     struct Row {
         Part a, b;
-        double left = 0;  ///< aim less its velocity
+        double left = 0;    ///< aim less its velocity
+        double change = 0;  ///< of its impulse
     };
     /// A constraint and its rows.
     struct Joint {
-        std::uint32_t constraint = 0, first = 0;
-        std::size_t a = 0, b = 0;  ///< places of the bodies
-        double stiffness = 0;      ///< [kg]
+        std::uint32_t constraint = 0, first = 0, end = 0;  ///< its rows
+        std::size_t a = 0, b = 0;                          ///< places of the bodies
+        double stiffness = 0;                              ///< [kg]
+    };
+    /// A row whose impulse has a bound.
+    struct Bounded {
+        std::uint32_t constraint = 0;
+        int row = 0;             ///< of the constraint
+        double response = 0;     ///< of its velocity, with the block's answer
+        std::size_t answer = 0;  ///< where the changes of rows_ by its unit impulse are in answers_
     };
 
+    void list_bodies(const Simulation& simulation, const StepData& step);
+    bool is_direct(const Constraint& constraint) const;
     std::size_t place_of(const Simulation& simulation, BodyId id) const;
     bool arrange(const Simulation& simulation, const StepData& step);
     void list_rows(const Simulation& simulation, const StepData& step);
-    Part motion_by(std::size_t body, const Vec4& r, const Wrench& unit) const;
+    void list_bounded(const Simulation& simulation, const StepData& step);
+    void list_stiffness(const StepData& step);
     void factorize();
     void solve();
+    double answer_of(const Joint& joint, const Row& row) const;
+    double solve_direct(const Simulation& simulation, StepData& step);
+    double solve_bounded(const Simulation& simulation, StepData& step, const Bounded& bounded);
+    void apply(const Simulation& simulation, StepData& step) const;
+    void apply_motion(StepData& step) const;
 
-    std::span<const BodyId> bodies_;
+    Cause cause_ = Cause::kLoad;
+    std::vector<BodyId> bodies_;  ///< movable ones that have joints, ascending
     std::span<const std::uint32_t> constraints_;
-    std::vector<Roots> roots_;  ///< of the bodies, and of all that contacts do not move
+    std::vector<MotionRoots> roots_;  ///< of the bodies, and of all that does not move
     std::vector<Joint> joints_;
     std::vector<Row> rows_;
+    std::vector<Bounded> bounded_;
+    std::vector<double> answers_;
+    std::vector<std::pair<std::size_t, Part>> stiffness_;  ///< of a body: the sum of part part^T
+    std::vector<Angles> pulls_;                            ///< K of every body
     std::vector<Part> motion_;
     BlockCholesky matrix_;
 };

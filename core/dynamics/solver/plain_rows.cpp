@@ -107,7 +107,7 @@ void PlainRows::list_bodies() {
     BodyId* end = first;
     const auto list = [&](BodyId a, BodyId b) {
         for (const BodyId id : {a, b})
-            if (simulation_.type_of(id).movable) *end++ = id;
+            if (simulation_.is_movable(id)) *end++ = id;
     };
     for (const std::uint32_t n : islands.runs_in(island_)) {
         const ContactList::Run run = step_.contacts.nth_run(n);
@@ -166,8 +166,10 @@ void PlainRows::make_rows() {
 void PlainRows::begin_block() {
     if (block_ || !step_.islands.direct[island_]) return;
     thread_local JointBlock block;
-    if (block.begin(simulation_, step_, bodies_, step_.islands.constraints_in(island_)))
+    if (block.begin(simulation_, step_, step_.islands.constraints_in(island_), cause_))
         block_ = &block;
+    // Geometric stiffness takes part in all that the impulses change, from the first on.
+    others_.for_all([&](Constraint& c) { c.starts_anew = block_ && block_->has_stiffness(); });
 }
 
 void PlainRows::start(Cause cause) {
@@ -183,7 +185,8 @@ void PlainRows::start(Cause cause) {
 }
 
 double PlainRows::sweep_others(Sweep sweep) {
-    return block_ ? block_->sweep(simulation_, step_) : others_.sweep(sweep, cause_);
+    const double of_block = block_ ? block_->sweep(simulation_, step_, sweep.pass) : 0;
+    return std::max(of_block, others_.sweep(sweep, cause_));
 }
 
 /// @return the largest velocity_left() if it is measured, else 0
@@ -312,7 +315,7 @@ void PlainRows::leave_part_of_restitution(double part) {
 }
 
 void PlainRows::keep() {
-    if (cause_ == Cause::kLoad) others_.keep();
+    others_.keep(cause_);
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         if (cause_ == Cause::kImpact) {
             step_.hit[contact] = row.normal_impulse > 0;
@@ -334,13 +337,28 @@ void PlainRows::end_correction() {
         turns |= turns_correction(simulation_, step_, bodies_[i], turning,
                                   turning - motions_[i].angular_velocity);
     }
-    if (!turns) return;
-    restore_turning();
-    step_.corrected[island_] = Correction::kStraight;
+    if (turns) {
+        restore_turning();
+        step_.corrected[island_] = Correction::kStraight;
+    }
+    // A block with geometric stiffness changes more than its impulses say.
+    if (!block_ || !block_->has_stiffness()) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        motions_[i] = motion_of(step_, bodies_[i]) - motions_[i];
+    step_.corrected[island_] = Correction::kMotion;
+}
+
+void PlainRows::take_motion_back() {
+    list_bodies();
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        step_.velocity[bodies_[i]] -= motions_[i].velocity;
+        step_.angular_velocity[bodies_[i]] += -motions_[i].angular_velocity;
+    }
 }
 
 /// From the rows' impulses to those of the load.
 void PlainRows::take_correction_back() {
+    if (step_.corrected[island_] == Correction::kMotion) return take_motion_back();
     const bool straight = step_.corrected[island_] == Correction::kStraight;
     if (straight) keep_motions();
     others_.take_correction_back();

@@ -60,6 +60,7 @@ class PlainRows {
     void keep_motions();
     void restore_motions();
     void restore_turning();
+    void take_motion_back();
     void swap_motions();
     void make_rows();
     void apply_impulse(const ContactRow& row, const Vec4& impulse);

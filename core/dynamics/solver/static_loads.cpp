@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/dynamics/constraints/contact_row.hpp"
-#include "core/dynamics/solver/block_cholesky.hpp"
+#include "core/dynamics/solver/motion_roots.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
@@ -19,30 +19,6 @@ using Part = BlockCholesky::Part;
 
 /// Runs of contacts above which bodies are not even counted: each of them in some corner.
 constexpr std::size_t kMostRuns = 8 * BlockCholesky::kMostRows;
-
-/// The roots of a body's inverse mass and inverse inertia.
-struct Roots {
-    double mass = 0;
-    BivectorMap inertia = BivectorMap::Zero();
-
-    /// What an impulse at an offset from the centre does.
-    Part of(const Vec4& r, const Vec4& impulse) const {
-        const Bivector moment = wedge(r, impulse);
-        Part part;
-        part << mass * impulse, inertia.col(0) * moment.xy + inertia.col(1) * moment.xz +
-                                    inertia.col(2) * moment.xw + inertia.col(3) * moment.yz +
-                                    inertia.col(4) * moment.yw + inertia.col(5) * moment.zw;
-        return part;
-    }
-};
-
-Roots roots_of(const Simulation& simulation, const StepData& step, BodyId id) {
-    const TypeProperties& type = simulation.type_of(id);
-    const auto& [xy, xz, xw, yz, yw, zw] = type.inverse_inertia;
-    const Bivector roots = {std::sqrt(xy), std::sqrt(xz), std::sqrt(xw),
-                            std::sqrt(yz), std::sqrt(yw), std::sqrt(zw)};
-    return {std::sqrt(type.inverse_mass), world_map(roots, type, step.rotor[id])};
-}
 
 /// One direction of a contact point.
 struct Along {
@@ -137,7 +113,7 @@ class StaticLoad {
     bool coloured_ = false;
     std::vector<BodyId> bodies_;
     std::vector<Impulse> given_;
-    std::vector<Roots> roots_;
+    std::vector<MotionRoots> roots_;
     std::vector<Point> points_;
     std::vector<Part> motion_, warm_motion_, next_;
     BlockCholesky matrix_;
@@ -240,8 +216,8 @@ void StaticLoad::add_point(std::size_t place, const Vec4& at) {
     for (int i = 0; i < 4; ++i) {
         Along& along = point.along[static_cast<std::size_t>(i)];
         along.axis = i == 0 ? normal : Vec4(Vec4::Unit(i - 1) - 2 * h[i - 1] * h);
-        along.a = -roots_[point.a].of(r_a, along.axis);
-        along.b = roots_[point.b].of(r_b, along.axis);
+        along.a = -roots_[point.a].of(r_a, {along.axis, {}});
+        along.b = roots_[point.b].of(r_b, {along.axis, {}});
         along.speed = along.axis.dot(i == 0 ? v : slip);
         along.warm_start = i == 0 ? last.normal : along.axis.dot(friction);
         warm_motion_[point.a] += along.warm_start * along.a;
@@ -255,7 +231,7 @@ void StaticLoad::add_point(std::size_t place, const Vec4& at) {
 
 void StaticLoad::list_points() {
     roots_.clear();
-    for (const BodyId id : bodies_) roots_.push_back(roots_of(*simulation_, *step_, id));
+    for (const BodyId id : bodies_) roots_.emplace_back(*simulation_, *step_, id);
     roots_.emplace_back();
     motion_.assign(roots_.size(), Part::Zero());
     warm_motion_ = motion_;

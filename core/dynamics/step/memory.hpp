@@ -50,7 +50,8 @@ struct StepMemory {
     /// The angular impulse against rolling and twisting for each of `impulses`, on b, world [N m
     /// s]; empty where there is no rolling friction.
     std::vector<Bivector> angular_impulses;
-    std::vector<Wrench> joint_impulses;  ///< of every joint; its parts have either sign
+    std::vector<Wrench> joint_impulses;  ///< of every part of a joint, see Joints; of either sign
+    std::vector<std::uint8_t> broken;    ///< of every joint: 1 if it is; empty if none is
     /// For every body the lowest body of the island in which it sleeps, or kAwake; empty where
     /// sleeping is off.
     std::vector<BodyId> asleep;

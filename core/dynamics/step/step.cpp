@@ -61,7 +61,8 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
     simulation.joints = make_joints(std::move(joints), bodies);
     std::vector<BodyId> jointed;
     for (const Joint& joint : simulation.joints.all)
-        jointed.insert(jointed.end(), {joint.a, joint.b});
+        for (const BodyId id : {joint.a, joint.b})
+            if (id != kWorld) jointed.push_back(id);
     simulation.types = type_properties(bodies, jointed);
     simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
@@ -78,7 +79,8 @@ void begin_step(const Simulation& simulation, StepData& step, double dt) {
     step.kick = step.h * simulation.settings.gravity.norm();
     step.substep = 0;
     step.joint_impulses = simulation.memory.joint_impulses;
-    step.joint_impulses.resize(simulation.joints.all.size());
+    step.joint_impulses.resize(simulation.joints.parts());
+    step.part_sums.assign(simulation.joints.parts(), {});
     step.asleep = simulation.memory.asleep;
     if (simulation.settings.sleeping) step.asleep.resize(count, kAwake);
     step.position.resize(count);
@@ -216,6 +218,7 @@ StepReport commit_step(Simulation& simulation, StepData& step) {
     std::swap(memory.asleep, step.asleep);
     std::swap(memory.kept, step.kept);
     std::swap(memory.joint_impulses, step.joint_impulses);
+    break_joints(simulation, step);
     std::swap(simulation.bodies.position, step.position);
     std::swap(simulation.bodies.rotor, step.rotor);
     std::swap(simulation.bodies.velocity, step.velocity);

@@ -138,8 +138,9 @@ struct BodyMotion {
     }
 };
 
-/// The position correction that follows an island's load: kStraight turns no body.
-enum class Correction : std::uint8_t { kNone, kAll, kStraight };
+/// The position correction that follows an island's load: kStraight turns no body, kMotion is taken
+/// back by the bodies' motion instead of by impulses.
+enum class Correction : std::uint8_t { kNone, kAll, kStraight, kMotion };
 
 /// What solve_impact() has to solve of an island: kPatch means that the island is a patch of a
 /// large one, see ImpactPatches.
@@ -160,6 +161,8 @@ struct Simulation {
     Needs needs;
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
+    /// Returns whether contacts can change the motion of a body; kWorld never moves.
+    bool is_movable(BodyId id) const { return id != kWorld && type_of(id).movable; }
 };
 
 /// The data that the stages of one step hand on. Their values do not survive the step, but their
@@ -184,7 +187,9 @@ struct StepData {
     std::vector<BodyPair> pairs;          ///< ascending
     ContactList contacts;                 ///< ascending (a, b, feature)
     std::vector<Constraint> constraints;  ///< all but contacts, of bodies that are awake
-    std::vector<Wrench> joint_impulses;   ///< of every joint, the last sub-step's at first
+    std::vector<Wrench> joint_impulses;   ///< of every joint's part, the last sub-step's at first
+    std::vector<Wrench> part_sums;        ///< of every joint's part: all impulses of the step
+    std::vector<Wrench> joint_sums;       ///< of every joint: all impulses of the last step
     Islands islands;
     bool rows_in_use = false;  ///< rows are in use: from build_islands() to the end of the sub-step
     std::vector<ContactRow> rows;          ///< of islands that are not coloured

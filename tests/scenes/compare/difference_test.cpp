@@ -166,6 +166,30 @@ TEST_F(DifferenceTest, ComparesRowsInAnyForm) {
     }
 }
 
+TEST_F(DifferenceTest, NamesTheJointThatDiffers) {
+    const auto none = [](std::uint64_t, Row&) {};
+    write_trajectory(a_, make_header(kTestBodies, 3), 7, none);
+    const auto changed = [&](std::size_t joints, auto&& change) {
+        fs::remove(b_);
+        write_trajectory(b_, make_header(kTestBodies, joints), 7, change);
+        return text_of(compare(a_, b_));
+    };
+    EXPECT_EQ(changed(3, none), "equal");
+    expect_in(changed(3, [](std::uint64_t i, Row& row) { row.facts.joints.error[1] += i == 2; }),
+              "step 6, time 0.025 s, joint 1 \"joint-1\" error: ");
+    // What is no number is compared, too.
+    const std::string position = changed(3, [](std::uint64_t i, Row& row) {
+        if (i == 3) row.facts.joints.position[0] = 0.5;
+    });
+    expect_in(position, "joint 0 \"d\xc3\xa9j\xc3\xa0\" position: nan in A, 0.5 in B");
+    expect_in(position, "other values     /joints/position/value");
+    expect_in(changed(3, [](std::uint64_t i, Row& row) { row.facts.joints.broken[2] = i == 5; }),
+              "step 18, time 0.07500000000000001 s, joint 2 \"joint-2\" broken: 1 in A, 0 in B, 1");
+    const std::string fewer = changed(2, none);
+    expect_in(fewer, "joints           3 in A, 2 in B");
+    EXPECT_EQ(fewer.find("first difference"), std::string::npos) << fewer;
+}
+
 TEST(BodyName, IsThatOfItsTable) {
     const std::string text =
         "[scene]\nname = \"s\"\n\n[[body]]\nname = \"a\"\nradius = 1\n\n[[body]]\nname = \"b\"\n"

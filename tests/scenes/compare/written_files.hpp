@@ -28,7 +28,7 @@ void write_trajectory(const std::filesystem::path& path, const TrajectoryHeader&
                       std::uint64_t rows, Change&& change) {
     TrajectoryWriter writer(path, header, make_steps(rows), false);
     for (std::uint64_t i = 0; i < rows; ++i) {
-        Row row = make_row(i, header.bodies);
+        Row row = make_row(i, header.bodies, header.joints.size());
         change(i, row);
         writer.append(row.facts, row.bodies, row.memory);
     }

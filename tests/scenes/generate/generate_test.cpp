@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/dynamics/diagnostics/joint_state.hpp"
 #include "core/dynamics/world.hpp"
+#include "core/error.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 
 namespace tesserae::scenes {
@@ -20,7 +22,7 @@ TEST(Generate, HasExactlyTheBodiesAskedForAndNoneStartsInAnother) {
             SCOPED_TRACE(std::string(name) + " " + std::to_string(bodies));
             const Scene scene = load_text(generated_scene(name, bodies));
             EXPECT_EQ(movable_bodies(scene), bodies);
-            World world(scene.bodies, *scene.physics);
+            World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
             // Half a step of falling moves them by rounding only.
             EXPECT_LT(world.step(1e-6).penetration, 1e-9);
         }
@@ -29,7 +31,7 @@ TEST(Generate, HasExactlyTheBodiesAskedForAndNoneStartsInAnother) {
 TEST(Generate, PyramidAndStacksStandAndAGasMoves) {
     const auto moved = [](const std::string& text) {
         const Scene scene = load_text(text);
-        World world(scene.bodies, *scene.physics);
+        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
         for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
         double farthest = 0;
         for (BodyId id = 0; id < scene.bodies.size(); ++id)
@@ -41,6 +43,25 @@ TEST(Generate, PyramidAndStacksStandAndAGasMoves) {
     EXPECT_LT(moved(generated_scene("pyramid", 36)), 8 * 0.005);
     EXPECT_LT(moved(generated_scene("stacks", 40)), 10 * 0.005);
     EXPECT_GT(moved(generated_scene("gas", 40)), 1);
+}
+
+/// A bridge sags and a net hangs, and what is joined stays joined.
+TEST(Generate, WhatIsJoinedStaysJoined) {
+    for (const char* name : {"chain", "grid", "bridge"}) {
+        const Scene scene = load_text(generated_scene(name, 50));
+        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+        for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
+        double farthest = 0;
+        for (const Joint& joint : scene.joints)
+            farthest = std::max(farthest, state_of(joint, world.bodies(), {}).error);
+        EXPECT_LT(farthest, 0.01) << name;
+        EXPECT_GT((world.bodies().position[25] - scene.bodies.position[25]).norm(), 0.05) << name;
+    }
+}
+
+TEST(Generate, RefusesMoreJointsThanAFileCanHave) {
+    EXPECT_THROW(generated_scene("grid", 8001), InputError);
+    EXPECT_EQ(load_text(generated_scene("grid", 8000)).joints.size(), 15911u);
 }
 
 TEST(Generate, SaysHowItWasMade) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "scenes/load/body_keys.hpp"
+#include "scenes/load/joint_keys.hpp"
 #include "scenes/load/overlay_keys.hpp"
 #include "scenes/load/picture_keys.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
@@ -45,6 +46,67 @@ shape = "hypersphere"
 radius = 1
 count = [2, 2, 1, 1]
 spacing = 3
+)";
+
+/// A joint of every type, called as its type.
+const std::string kJointScene = std::string(kScene) + R"(
+[[body]]
+name = "j"
+shape = "hypersphere"
+radius = 1
+position = [9, 0, 0, 0]
+[[joint]]
+name = "point"
+type = "point"
+a = "j"
+anchor = [0, 0, 0, 0]
+[[joint]]
+name = "distance"
+type = "distance"
+a = "j"
+anchor_a = [0, 0, 0, 0]
+anchor_b = [0, 3, 0, 0]
+[[joint]]
+name = "rope"
+type = "rope"
+a = "j"
+anchor_a = [0, 0, 0, 0]
+anchor_b = [0, 3, 0, 0]
+[[joint]]
+name = "spring"
+type = "spring"
+a = "j"
+anchor_a = [0, 0, 0, 0]
+anchor_b = [0, 3, 0, 0]
+frequency = 1
+[[joint]]
+name = "weld"
+type = "weld"
+a = "j"
+anchor = [0, 0, 0, 0]
+[[joint]]
+name = "slider"
+type = "slider"
+a = "j"
+axis = [1, 0, 0, 0]
+[[joint]]
+name = "hinge"
+type = "hinge"
+a = "j"
+anchor = [0, 0, 0, 0]
+plane = "xy"
+[[joint]]
+name = "swivel"
+type = "swivel"
+a = "j"
+anchor = [0, 0, 0, 0]
+axis = [1, 0, 0, 0]
+[[joint]]
+name = "general"
+type = "general"
+a = "j"
+anchor = [0, 0, 0, 0]
+free = ["x"]
 )";
 
 // other(value, rule): a value, in TOML, that the rule allows and that changes the scene.
@@ -95,6 +157,14 @@ std::string other(const Shape&, AnyShape) { return "\"hypercapsule\""; }
 std::string other(const BodyTable&, MassOfBody) { return "3"; }
 std::string other(const BodyTable&, DensityOfBody) { return "3"; }
 std::string other(const std::array<std::uint32_t, 4>&, LatticeCount) { return "[1, 2, 3, 4]"; }
+std::string other(const JointPlane&, PlaneOfHinge) { return "\"zw\""; }
+std::string other(std::uint16_t, FreeCoordinates) { return "[\"x\", \"zw\"]"; }
+std::string other(const Vec2&, LimitsOf) { return "[-1, 2]"; }
+std::string other(const JointMotor&, MotorOf) { return "{ target = 1 }"; }
+std::string other(const JointBreak&, BreakOf) { return "{ force = 2 }"; }
+std::string other(const auto&, ForEachFree<LimitsOf>) { return "{ x = [-1, 2] }"; }
+std::string other(const auto&, ForEachFree<SpringOf>) { return "{ x = { stiffness = 2 } }"; }
+std::string other(const auto&, ForEachFree<MotorOf>) { return "{ x = { speed = 2 } }"; }
 template <class T>
 std::string other(const std::optional<T>& value, const auto& rule) {
     return other(value.value_or(T{}), rule);
@@ -128,6 +198,7 @@ struct Table {
     std::function<std::string(const std::string& key, const std::string& value)> set;
     std::map<std::string, std::string> also = {};  ///< what another key's new value asks for
     std::set<std::string> lists_of_others = {};    ///< keys that are not in the table's own list
+    std::string scene = kScene;
 };
 
 std::function<std::string(const std::string&, const std::string&)> set_in(const std::string& path) {
@@ -156,7 +227,7 @@ void expect_written(const Table& table, const std::string& key, const std::strin
     if (table.also.contains(key)) sets.push_back(table.also.at(key));
     const std::string alias = written_as(value, rule...);
     const std::string line = alias.empty() ? key : alias;
-    const std::string changed = load_text(kScene, sets).effective;
+    const std::string changed = load_text(table.scene, sets).effective;
     EXPECT_NE(line_of(changed, table.header, table.index, line), "") << key;
     EXPECT_NE(line_of(changed, table.header, table.index, line),
               line_of(base, table.header, table.index, line))
@@ -168,20 +239,23 @@ void expect_written(const Table& table, const std::string& key, const std::strin
     const std::string changed = load_text(kScene, {table.set(key, toml_text(value))}).effective;
     EXPECT_EQ(changed, base);
 }
+/// Another type has other keys, and a table of its own here.
+void expect_written(const Table&, const std::string&, const std::string&, const JointTable&,
+                    const JointTypeName&) {}
 
 /// Every key of a list changes its line of the canonical text, and every key that the loader looks
 /// for is in the list.
 /// @param list   called with a visitor of the list's keys
 void expect_all_written(const Table& table, const auto& list) {
     std::set<std::string> listed = table.lists_of_others;
-    const std::string base = load_text(kScene).effective;
+    const std::string base = load_text(table.scene).effective;
     list([&](const Key& listed_key, const auto& value, const auto&... rule) {
         const std::string key = listed_key.name;
         listed.insert(key);
         expect_written(table, key, base, value, rule...);
     });
 
-    const std::string error = error_of(kScene, {table.set("zzz", "1")});
+    const std::string error = error_of(table.scene, {table.set("zzz", "1")});
     const auto at = error.find("known here:");
     ASSERT_NE(at, std::string::npos) << error;
     std::istringstream known(error.substr(at + 11));
@@ -265,6 +339,22 @@ TEST(Keys, OfBodiesAndLatticesAreReadAndWritten) {
             name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
             mass_keys(body, visit), surface_keys(body, visit, materials);
             if (is_lattice) lattice_keys(lattice, visit, kMaxBodies);
+        });
+    }
+}
+
+TEST(Keys, OfJointsAreReadAndWritten) {
+    JointTable joint;
+    for (std::size_t i = 0; i < std::size(kJointTypes); ++i) {
+        joint.type = static_cast<JointType>(i);
+        const std::string path = "joint." + std::string(kJointTypes[i]);
+        std::map<std::string, std::string> also = {{"damping_force", path + ".stiffness=1"},
+                                                   {"length", path + ".anchor_b=[0.25, 0, 0, 0]"}};
+        const Table table = {"[[joint]]", static_cast<int>(i), set_in(path), std::move(also),
+                             {"type"},    kJointScene};
+        expect_all_written(table, [&](const auto& visit) {
+            joint_keys(joint, visit);
+            joint_type_keys(joint, visit), joint_end_keys(joint, visit);
         });
     }
 }

@@ -40,6 +40,14 @@ spacing = [1,
   2, # comment "
   3, 4]
 jitter = 0.1
+[[joint]]
+type = "general"
+a = "body-1"
+b = "floor"
+anchor = [0, 1, 0, 0.5]
+free = ["x", "yz"]
+limits.x = [-1, 2]
+motor = { yz = { target = 20, max = 5 } }
 [camera]
 look_at = [0, 1, 0, 0.5]
 [[light]]

@@ -34,7 +34,7 @@ std::set<std::string> known_in(const std::string& scene) {
 }
 
 TEST(Reference, HasEveryKeyThatIsRead) {
-    const std::vector<std::pair<std::string, std::string>> tables = {
+    std::vector<std::pair<std::string, std::string>> tables = {
         {"scene", "[scene]\n"},
         {"physics", "[physics]\n"},
         {"material", "[[material]]\nname = \"m\"\n"},
@@ -53,6 +53,12 @@ TEST(Reference, HasEveryKeyThatIsRead) {
         {"lattice",
          "[[lattice]]\nshape = \"hypersphere\"\nradius = 1\ncount = [1, 1, 1, 1]\nspacing = 1\n"},
     };
+    const std::string joint =
+        "[[body]]\nshape = \"hypersphere\"\nradius = 1\n"
+        "[[joint]]\na = \"body-0\"\n";
+    for (const char* type :
+         {"point", "distance", "rope", "spring", "weld", "slider", "hinge", "swivel", "general"})
+        tables.emplace_back("joint", fmt::format("{}type = \"{}\"\n", joint, type));
     for (const auto& [table, text] : tables) {
         const auto known = known_in(text + "zzz = 1\n");
         EXPECT_FALSE(known.empty()) << text;
@@ -103,6 +109,11 @@ TEST(Reference, OfATopicIsShortOrNamesTheNearest) {
     EXPECT_NE(reference("rotation").find("[[body]]"), std::string::npos);
     EXPECT_NE(reference("hyperbox.size").find("shape = \"hyperbox\""), std::string::npos);
     EXPECT_NE(reference("size").find("[render]"), std::string::npos);
+    // A joint and a light are of type "point".
+    EXPECT_NE(reference("point").find("[[joint]], type"), std::string::npos);
+    EXPECT_NE(reference("point").find("[[light]], type"), std::string::npos);
+    EXPECT_TRUE(reference("hinge").starts_with("### `type = \"hinge\"`"));
+    EXPECT_NE(reference("joint.plane").find("| `plane` | "), std::string::npos);
     EXPECT_NE(reference("camera.key.time").find("`time`"), std::string::npos);
     const auto error_for = [](const char* topic) {
         try {

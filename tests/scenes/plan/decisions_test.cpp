@@ -257,14 +257,17 @@ TEST(PlanOfMotion, SaysWhetherAnythingMoves) {
     const std::string held = "fixed = [\"position\", \"rotation\"]\n";
     const std::string weightless = "[physics]\ngravity = [0, 0, 0, 0]\n", falls = "[physics]\n";
     const std::string wall = "[[body]]\nshape = \"hyperplane\"\nnormal = [0, 1, 0, 0]\n";
+    const std::string driven =
+        "[[joint]]\ntype = \"slider\"\na = \"body-0\"\naxis = [1, 0, 0, 0]\n"
+        "motor = { speed = 1 }\n";
     for (const std::string& text :
          {weightless + ball(0), weightless + ball(0, "velocity = [0, 0, 0, 1]"),
           weightless + ball(0, "angular_velocity = { xw = 1 }"), weightless + ball(0) + ball(1),
           weightless + ball(0, held) + ball(5, held), falls + ball(0), falls + ball(0, held),
           falls + ball(0, "fixed = [\"position\"]"), falls + wall,
-          falls + ball(0, held + "velocity = [1, 0, 0, 0]")}) {
+          falls + ball(0, held + "velocity = [1, 0, 0, 0]"), weightless + ball(0) + driven}) {
         const Scene scene = load_text(text);
-        World world(scene.bodies, *scene.physics);
+        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
         for (int step = 0; step < 10; ++step) world.step(0.01);
         bool moved = false;
         for (BodyId id = 0; id < scene.bodies.size(); ++id)

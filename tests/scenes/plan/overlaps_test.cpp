@@ -44,6 +44,18 @@ TEST(Overlaps, AreNotToldOfWhatTouchesOrStandsStill) {
               1U);
 }
 
+TEST(Overlaps, AreNotToldOfWhatAJointKeepsApart) {
+    const auto told_with = [](const std::string& keys) {
+        return warnings_of("[physics]\n" + ball_at(0) + ball_at(0.5) +
+                           "[[joint]]\ntype = \"weld\"\na = \"body-1\"\nb = \"body-0\"\n"
+                           "anchor = [0, 0, 0, 0]\n" +
+                           keys)
+            .size();
+    };
+    EXPECT_EQ(told_with(""), 0U);
+    EXPECT_EQ(told_with("collide = true\n"), 1U);
+}
+
 TEST(Overlaps, OfRandomBallsAreAllThatThereAre) {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> place(-1.5, 1.5), radius(0.2, 0.5);

@@ -10,6 +10,7 @@
 #include "scenes/plot/gnuplot.hpp"
 #include "tests/error_of.hpp"
 #include "tests/scenes/program/program.hpp"
+#include "tests/scenes/trajectory/trajectory_rows.hpp"
 
 namespace tesserae::scenes::testing {
 namespace {
@@ -50,6 +51,26 @@ TEST(ObservablesPlot, KeepsPeaksOfManySteps) {
         }
     const auto& overlap = panels[4].lines[0].value;
     EXPECT_EQ(*std::max_element(overlap.begin(), overlap.end()), 0.25);
+}
+
+TEST(JointsPlot, ShowsPositionsOfJointsThatHaveOne) {
+    std::vector<StepFacts> facts = falling(10);
+    for (StepFacts& f : facts)
+        f.joints = {{1, 2, 3}, {4, 5, 6}, {0, 0, 7}, {0, 0, 0}, {f.time, 8, 9}, {0, 0, 0}};
+    const auto panels = joints_plot(facts, {{"door", "deg"}, {"rope", ""}, {"lift", "m"}});
+    ASSERT_EQ(panels.size(), 6u);
+    EXPECT_EQ(panels[0].title, "impulse in a step [N s]");
+    ASSERT_EQ(panels[0].lines.size(), 3u);
+    EXPECT_EQ(panels[0].lines[1].name, "rope");
+    EXPECT_EQ(panels[0].lines[1].value, std::vector<double>(10, 2));
+    EXPECT_EQ(panels[1].lines[0].value, std::vector<double>(10, 4));
+    EXPECT_EQ(panels[2].lines[2].value, std::vector<double>(10, 7));
+    EXPECT_EQ(panels[4].title, "position [m]");
+    ASSERT_EQ(panels[4].lines.size(), 1u);
+    EXPECT_EQ(panels[4].lines[0].value, std::vector<double>(10, 9));
+    EXPECT_EQ(panels[5].lines[0].name, "door");
+    EXPECT_EQ(panels[5].lines[0].value, panels[5].lines[0].time);
+    EXPECT_EQ(joints_plot(facts, {{"a", ""}, {"b", ""}, {"c", ""}}).size(), 4u);
 }
 
 TEST(PlotScript, TextsCannotLeaveTheirPlace) {
@@ -103,6 +124,29 @@ TEST(PlotProgram, DrawsTheSamePictureEveryTime) {
                                               "--overwrite"};
     EXPECT_EQ(tesserae(replace).status, 0);
     EXPECT_EQ(content(folder / "other.svg"), svg);
+}
+
+TEST(PlotProgram, DrawsJointsByTheirNames) {
+    const Folder folder("plot");
+    const auto trajectory = folder.file("film.h5");
+    {
+        TrajectoryWriter writer(trajectory, make_header(3, 3), make_steps(9), false);
+        append_rows(writer, 9, 3, 3);
+        writer.finish();
+    }
+    const Outcome plot = tesserae({"plot", trajectory, "-o", folder.file("a.svg"), "--joint",
+                                   "joint-2", "--joint", "d\xc3\xa9j\xc3\xa0"});
+    ASSERT_EQ(plot.status, 0) << plot.err;
+    const std::string svg = content(folder / "a.svg");
+    for (const char* text : {">joint-2<", ">d\xc3\xa9j\xc3\xa0<", ">position [deg]<"})
+        EXPECT_NE(svg.find(text), std::string::npos) << text;
+    EXPECT_EQ(svg.find(">joint-1<"), std::string::npos);
+    const Outcome wrong =
+        tesserae({"plot", trajectory, "-o", folder.file("b.svg"), "--joint", "jiont-2"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_NE(wrong.err.find("has no joint \"jiont-2\"; did you mean \"joint-2\"?"),
+              std::string::npos)
+        << wrong.err;
 }
 
 TEST(PlotProgram, SaysWhatIsWrong) {

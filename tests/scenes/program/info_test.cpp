@@ -173,6 +173,19 @@ TEST(Info, NumbersThatJsonDoesNotHaveAreNamed) {
     EXPECT_EQ(json.at("energy, first row").at("value"), "nan");
 }
 
+TEST(Info, CountsJointsAndThoseThatBroke) {
+    const Folder folder("joints");
+    const auto file = folder.file("film.h5");
+    TrajectoryWriter writer(file, make_header(3, 4), make_steps(7), false);
+    append_rows(writer, 7, 3, 4);
+    writer.finish();
+    const auto json = nlohmann::json::parse(tesserae({"info", file, "--json"}).out);
+    EXPECT_EQ(json.at("joints"), 4);
+    EXPECT_EQ(json.at("broken_joints_last_row"), 1);
+    const Outcome info = tesserae({"info", file});
+    EXPECT_NE(info.out.find("\nbroken joints, last row  1\n"), std::string::npos) << info.out;
+}
+
 TEST(Info, AnImageWithoutBodiesHasNoNames) {
     const Folder folder("nobody");
     const auto scene = folder.write("empty.toml", "[render]\nsize = [8, 8]\n");

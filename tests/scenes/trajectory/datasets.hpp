@@ -40,6 +40,29 @@ inline std::map<std::string, std::string> datasets_of(const std::filesystem::pat
     return found;
 }
 
+/// A dataset of the extents, chunked where `chunk` is not 0, empty.
+inline void make_dataset(hid_t file, const char* name, hid_t type, std::vector<hsize_t> extent,
+                         hsize_t chunk) {
+    const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    if (chunk > 0) {
+        std::vector<hsize_t> sides(extent.size(), 1);
+        sides[0] = chunk;
+        H5Pset_chunk(creation, static_cast<int>(sides.size()), sides.data());
+    }
+    H5Dclose(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+}
+
+inline void make_text(hid_t file, const char* name, std::size_t bytes) {
+    const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+    H5Tset_size(type, bytes);
+    H5Dclose(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+    H5Tclose(type);
+}
+
 /// The texts of a dataset of fixed length, one a body. The file may be one that is being written.
 inline std::vector<std::string> texts_of(const std::filesystem::path& path, const char* name) {
     const hdf5::Handle file = hdf5::open_file(path, false);

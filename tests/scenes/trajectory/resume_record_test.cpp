@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
+
+#include "scenes/load/hash.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -30,6 +33,9 @@ ResumeRecord random_record(unsigned contacts, unsigned joints, bool rolling,
     for (unsigned i = 0; i < joints; ++i)
         record.memory.joint_impulses.push_back(
             {{number(random), number(random), number(random), number(random)}, bivector(random)});
+    // Joints have two parts or one; some are broken, or none ever was.
+    for (unsigned i = 0; i < (rolling ? joints / 2 : 0); ++i)
+        record.memory.broken.push_back(i % 3 == 0);
     return record;
 }
 
@@ -44,11 +50,54 @@ TEST(ResumeRecord, ComesBackFromItsBytes) {
                 ASSERT_TRUE(again);
                 EXPECT_EQ(to_bytes(*again), bytes);
                 EXPECT_EQ(again->memory.joint_impulses, record.memory.joint_impulses);
+                EXPECT_EQ(again->memory.broken, record.memory.broken);
                 EXPECT_EQ(again->memory.angular_impulses, record.memory.angular_impulses);
                 EXPECT_EQ(again->memory.impulses.size(), contacts);
                 for (std::size_t cut = 0; cut < bytes.size(); cut += 1 + cut / 8)
                     EXPECT_FALSE(to_record(std::string_view(bytes).substr(0, cut))) << cut;
             }
+}
+
+/// Where the numbers of parts and of broken joints are, in a record that has some.
+constexpr std::size_t kRecordFront = 24, kPartsAt = kRecordFront + 64, kBrokenAt = kPartsAt + 8;
+
+/// A record whose bytes at a place are changed, with the hash that fits.
+std::string forged(std::string bytes, std::size_t at, std::uint64_t number) {
+    std::memcpy(bytes.data() + at, &number, sizeof number);
+    const auto hash = hash_of(std::string_view(bytes).substr(kRecordFront));
+    std::memcpy(bytes.data() + 8, &hash, sizeof hash);
+    return bytes;
+}
+
+TEST(ResumeRecord, RefusesNumbersOfJointsThatItDoesNotHold) {
+    std::mt19937_64 random(2);
+    const std::string bytes = to_bytes(random_record(3, 30, true, random));
+    ASSERT_TRUE(to_record(forged(bytes, kPartsAt, 30)));
+    ASSERT_TRUE(to_record(forged(bytes, kBrokenAt, 15)));
+    for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{14}, std::uint64_t{31},
+                                       std::uint64_t{1} << 40, ~std::uint64_t{0}})
+        for (const std::size_t at : {kPartsAt, kBrokenAt})
+            EXPECT_FALSE(to_record(forged(bytes, at, number))) << at << " " << number;
+}
+
+TEST(ResumeRecord, WithoutJointsIsAsItWasBeforeThereWereAny) {
+    std::mt19937_64 random(3);
+    // Front, fixed numbers, and a contact of 36 bytes each.
+    EXPECT_EQ(to_bytes(random_record(5, 0, false, random)).size(), kRecordFront + 64 + 5 * 36);
+    EXPECT_EQ(to_bytes(random_record(5, 2, false, random)).size(),
+              kRecordFront + 64 + 16 + 5 * 36 + 2 * 80);
+}
+
+TEST(ResumeRecord, FitsJointsOrHasNothingOfThem) {
+    StepMemory memory;
+    EXPECT_TRUE(is_of_joints(memory, 3, 5));
+    memory.joint_impulses.resize(5);
+    EXPECT_TRUE(is_of_joints(memory, 3, 5));
+    EXPECT_FALSE(is_of_joints(memory, 3, 4));
+    EXPECT_FALSE(is_of_joints(memory, 0, 0));
+    memory.broken.resize(3);
+    EXPECT_TRUE(is_of_joints(memory, 3, 5));
+    EXPECT_FALSE(is_of_joints(memory, 4, 5));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "tests/error_of.hpp"
+#include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -35,29 +36,6 @@ class TrajectoryRefuse : public ::testing::Test {
     const tesserae::testing::TemporaryFolder folder_{"trajectory"};
     const fs::path path_ = folder_ / "film.h5", partial_ = folder_ / "film.h5.partial";
 };
-
-/// A dataset of the extents, chunked where `chunk` is not 0, empty.
-void make_dataset(hid_t file, const char* name, hid_t type, std::vector<hsize_t> extent,
-                  hsize_t chunk) {
-    const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    if (chunk > 0) {
-        std::vector<hsize_t> sides(extent.size(), 1);
-        sides[0] = chunk;
-        H5Pset_chunk(creation, static_cast<int>(sides.size()), sides.data());
-    }
-    H5Dclose(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    H5Pclose(creation);
-    H5Sclose(space);
-}
-
-void make_text(hid_t file, const char* name, std::size_t bytes) {
-    const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-    H5Tset_size(type, bytes);
-    H5Dclose(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    H5Sclose(space);
-    H5Tclose(type);
-}
 
 constexpr const char* kRotor = "/particles/bodies/rotor/value";
 constexpr const char* kStep = "/particles/bodies/position/step";

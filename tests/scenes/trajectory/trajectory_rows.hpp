@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/error.hpp"
@@ -18,7 +20,28 @@ struct Row {
     StepMemory memory;
 };
 
-inline Row make_row(std::uint64_t row, std::size_t bodies) {
+/// So many joints have twice as many parts; a third of their positions are no numbers. From row 5
+/// on the last one is broken.
+inline void add_joints(Row& made, std::uint64_t row, std::size_t joints) {
+    std::mt19937_64 random(row + 1000);
+    std::normal_distribution<double> normal;
+    JointFacts& facts = made.facts.joints;
+    for (std::size_t i = 0; i < joints; ++i) {
+        facts.impulse.push_back(row == 0 ? 0 : normal(random));
+        facts.angular_impulse.push_back(5e-324);
+        facts.error.push_back(normal(random));
+        facts.angular_error.push_back(0);
+        facts.position.push_back(i % 3 == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                            : normal(random));
+        facts.broken.push_back(row >= 5 && i + 1 == joints);
+    }
+    for (std::size_t i = 0; i < (row > 0 ? 2 * joints : 0); ++i)
+        made.memory.joint_impulses.push_back(
+            {{normal(random), -0.0, 1, 5e-324}, {normal(random), 1, -2, 3, 0, normal(random)}});
+    if (row >= 5) made.memory.broken = facts.broken;
+}
+
+inline Row make_row(std::uint64_t row, std::size_t bodies, std::size_t joints = 0) {
     std::mt19937_64 random(row + 1);
     std::normal_distribution<double> normal;
     Row made;
@@ -65,6 +88,7 @@ inline Row make_row(std::uint64_t row, std::size_t bodies) {
     }
     for (std::size_t i = 0; i < (row % 3 == 0 ? made.memory.impulses.size() : 0); ++i)
         made.memory.angular_impulses.push_back({normal(random), 1, -0.0, 0, 5e-324, 2});
+    add_joints(made, row, joints);
     return made;
 }
 
@@ -85,7 +109,17 @@ inline BodyDescriptions make_descriptions(std::size_t bodies) {
     return {types, std::span(type).first(bodies), names};
 }
 
-inline TrajectoryHeader make_header(std::size_t bodies) {
+/// Joints by turns without a position, with one in metres and with one in degrees.
+inline std::vector<JointDescription> make_joint_descriptions(std::size_t joints) {
+    const char* const units[] = {"", "m", "deg"};
+    std::vector<JointDescription> described;
+    for (std::size_t i = 0; i < joints; ++i)
+        described.push_back(
+            {i == 0 ? "d\xc3\xa9j\xc3\xa0" : "joint-" + std::to_string(i), units[i % 3]});
+    return described;
+}
+
+inline TrajectoryHeader make_header(std::size_t bodies, std::size_t joints = 0) {
     return {"test",
             "# t\xc3\xa9xt\n",
             "effective",
@@ -98,7 +132,9 @@ inline TrajectoryHeader make_header(std::size_t bodies) {
             3,
             {},
             1,
-            make_descriptions(bodies)};
+            make_descriptions(bodies),
+            make_joint_descriptions(joints),
+            2 * joints};
 }
 
 inline std::vector<std::uint64_t> make_steps(std::uint64_t rows) {
@@ -108,9 +144,10 @@ inline std::vector<std::uint64_t> make_steps(std::uint64_t rows) {
 }
 
 /// Appends what is missing, up to a row; the caller finishes or not.
-inline void append_rows(TrajectoryWriter& writer, std::uint64_t end, std::size_t bodies) {
+inline void append_rows(TrajectoryWriter& writer, std::uint64_t end, std::size_t bodies,
+                        std::size_t joints = 0) {
     for (std::uint64_t i = writer.rows(); i < end; ++i) {
-        const Row row = make_row(i, bodies);
+        const Row row = make_row(i, bodies, joints);
         writer.append(row.facts, row.bodies, row.memory);
     }
 }

@@ -16,13 +16,6 @@ namespace {
 
 using namespace testing;
 
-/// A body that is held at the origin.
-BodyType anchor_type() {
-    BodyType type = sphere_type(0.05);
-    type.fixed_position = type.fixed_rotation = true;
-    return type;
-}
-
 Joint point_joint(BodyId a, const Vec4& on_a, BodyId b, const Vec4& on_b) {
     return {a, b, PointJoint{on_a, on_b}, false};
 }
@@ -48,9 +41,6 @@ double largest_error(const World& world) {
     return largest;
 }
 
-/// Islands solved by sweeps one by one, by sweeps in colours, and with joints as one block.
-const ColouredFrom kAllWays[] = {kNoneColoured, 1, {}};
-
 /// A chain of balls along x, the first one held.
 struct Chain {
     Bodies bodies;
@@ -59,7 +49,7 @@ struct Chain {
 
 Chain chain_of(int links, const Vec4& direction, double last_mass = 1) {
     Chain chain;
-    add(chain.bodies, anchor_type());
+    add(chain.bodies, held_type());
     const double half = 0.5;
     for (int i = 0; i < links; ++i) {
         const BodyType type = sphere_type(0.3, i + 1 == links ? last_mass : 1);
@@ -142,7 +132,7 @@ Hanging hanging(std::mt19937_64& random, bool flat) {
     const Vec4 centre = to_matrix(rotor) * arm;
     const Vec4 box = flat ? Vec4(Vec4::Constant(0.5)) : size;
     Hanging of{{}, {}, Top(box, mass, arm, kDown, rotor, omega)};
-    add(of.bodies, anchor_type());
+    add(of.bodies, held_type());
     add(of.bodies, box_type(box, mass), centre, velocity_at(omega, centre), omega, rotor);
     of.joints = {point_joint(0, Vec4::Zero(), 1, -arm)};
     return of;
@@ -340,8 +330,8 @@ TEST(Joint, HandsAnElasticImpactOn) {
 
 TEST(Joint, RefusesBodiesThatCannotBeJoined) {
     Bodies bodies;
-    add(bodies, anchor_type());
-    add(bodies, anchor_type());
+    add(bodies, held_type());
+    add(bodies, held_type());
     add(bodies, sphere_type(0.5), {2, 0, 0, 0});
     const auto joined = [&](BodyId a, BodyId b) {
         return make_simulation(bodies, PhysicsSettings{},

@@ -14,12 +14,6 @@ namespace {
 
 using namespace testing;
 
-BodyType held_type() {
-    BodyType type = sphere_type(0.05);
-    type.fixed_position = type.fixed_rotation = true;
-    return type;
-}
-
 struct Jointed {
     Bodies bodies;
     std::vector<Joint> joints;
@@ -69,6 +63,22 @@ TEST(JointBlock, ARopeHoldsWhatLeansOnAShelf) {
     run(world, 480);
     EXPECT_LT((world.bodies().position[of.joints.back().b] - load).norm(), 0.01);
     EXPECT_LT(fastest_of(world), 0.02);
+}
+
+/// A rope is as stiff where its island is large: its load is laid on a hundred blocks.
+TEST(JointBlock, IsNoWeakerInALargeIsland) {
+    Jointed of = rope(12, 900, 0.3, -Vec4::UnitY());
+    const Vec4 load = of.bodies.position.back();
+    add(of.bodies, plane_type(Vec4::UnitY(), load[1] - 0.3 - 4 * 0.1, 0.5));
+    const auto block = add(of.bodies, box_type(Vec4::Constant(0.1)), load - Vec4(0, 0.35, 0, 0));
+    for (int i = 0; i < 400; ++i)
+        if (i / 100 != 0 || i % 100 != 0)
+            add(of.bodies, of.bodies.type[block],
+                load + 0.1 * Vec4(i % 10 - 0.0, -3.5 - i / 100, i / 10 % 10, 0));
+    World world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
+    run(world, 240);
+    for (const Joint& joint : of.joints)
+        EXPECT_LT(coordinates_of(joint, world.bodies()).values.norm(), 1e-4);
 }
 
 /// What is let go aslant swings, in all four dimensions, and gains next to nothing.

@@ -1,0 +1,196 @@
+#include "core/dynamics/constraints/pose_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/dynamics/constants.hpp"
+#include "core/dynamics/step/step_data.hpp"
+
+namespace tesserae {
+
+void list_joints(const Simulation& simulation, StepData& step) {
+    const Joints& joints = simulation.joints;
+    const auto is_awake = [&](BodyId id) {
+        return simulation.is_movable(id) && !is_asleep(step, id);
+    };
+    step.constraints.resize(joints.parts());
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < joints.all.size(); ++i) {
+        if (joints.is_broken(i)) continue;
+        if (!is_awake(joints.all[i].a) && !is_awake(joints.all[i].b)) continue;
+        for (std::uint32_t part = joints.first_part[i]; part < joints.first_part[i + 1]; ++part) {
+            step.constraints[count].joint = i;
+            step.constraints[count++].part = part;
+        }
+    }
+    step.constraints.resize(count);
+}
+
+namespace {
+
+JointedBody placed(const StepData& step, BodyId id) {
+    if (id == kWorld) return {};
+    return {step.position[id], step.rotor[id], step.velocity[id], step.angular_velocity[id]};
+}
+
+/// Poses one constraint of a joint.
+class PosedPart {
+  public:
+    PosedPart(const Simulation& simulation, StepData& step, Constraint& constraint)
+        : simulation_(simulation),
+          step_(step),
+          joint_(simulation.joints.all[constraint.joint]),
+          out_(constraint),
+          a_(placed(step, joint_.a)),
+          b_(placed(step, joint_.b)),
+          coordinates_(std::visit([&](const auto& kind) { return coordinates_of(kind, a_, b_); },
+                                  joint_.kind)) {}
+
+    void pose() {
+        out_.a = out_.place_a = joint_.a;
+        out_.b = out_.place_b = joint_.b;
+        out_.r_a = coordinates_.anchor - a_.position;
+        out_.r_b = coordinates_.anchor - b_.position;
+        out_.size = 0;
+        out_.compliance = 0;
+        out_.most = 0;
+        out_.in_block = out_.starts_anew = false;
+        std::uint32_t part = out_.part - simulation_.joints.first_part[out_.joint];
+        if (const auto held = held_of(joint_); held != 0 && part-- == 0)
+            hold(held);
+        else if (!joint_.limits.empty() && part-- == 0)
+            limit();
+        else
+            drive(joint_.drives[part]);
+        set_response(simulation_, step_, out_);
+        out_.impulse = impulses_of(out_, step_.joint_impulses[out_.part]);
+    }
+
+  private:
+    /// Adds a multiple of a coordinate's row.
+    void add_row(int coordinate, double factor) {
+        const Wrench& row = coordinates_.rows[static_cast<std::size_t>(coordinate)];
+        out_.rows[static_cast<std::size_t>(out_.size++)] = {factor * row.impulse,
+                                                            factor * row.moment};
+    }
+    RowVector rates() const {
+        return row_velocities(out_, {a_.velocity, a_.angular_velocity},
+                              {b_.velocity, b_.angular_velocity});
+    }
+    /// What the coordinates change in a sub-step in which the bodies go straight on and turn,
+    /// beside what they do at their present rates: its even part, so that motions can be reversed.
+    /// None in loops: bodies that hold each other from several sides would press each other apart
+    /// by it.
+    RowVector bends() const {
+        if (simulation_.joints.in_loop[out_.joint] != 0) return RowVector::Zero(coordinates_.size);
+        const auto values_at = [&](double time) {
+            const JointedBody a = moved_on(a_, time), b = moved_on(b_, time);
+            return std::visit(
+                [&](const auto& kind) { return values_of(kind, a, b, coordinates_.turn); },
+                joint_.kind);
+        };
+        return 0.5 * (values_at(step_.h) + values_at(-step_.h)) - coordinates_.values;
+    }
+    /// Lengths by which a row's error is measured: a moment's acts at the bodies' radii.
+    double arm_of(const Wrench& row) const {
+        if (!(row.impulse == Vec4::Zero())) return 1;
+        double arm = kNoLimit;
+        for (const BodyId id : {joint_.a, joint_.b})
+            if (simulation_.is_movable(id)) arm = std::min(arm, simulation_.type_of(id).radius);
+        return arm;
+    }
+    /// The greatest speed at which an error is taken away [m/s].
+    double fastest_correction() const {
+        double slop = kNoLimit;
+        for (const BodyId id : {joint_.a, joint_.b})
+            if (id != kWorld) slop = std::min(slop, simulation_.type_of(id).slop);
+        return kFastestCorrection / kSlop * slop + step_.kick;
+    }
+    /// The rows aim at no distance after the sub-step.
+    /// @param now     distances of the rows
+    /// @param bends   see bends()
+    void aim(const RowVector& now, const RowVector& bends) {
+        const auto is_off = [&](int i) { return out_.set == ImpulseSet::kAll || now[i] < 0; };
+        double squared = 0;
+        for (int i = 0; i < out_.size; ++i) {
+            const double arm = arm_of(out_.rows[static_cast<std::size_t>(i)]);
+            if (is_off(i)) squared += arm * arm * now[i] * now[i];
+        }
+        const double far = std::sqrt(squared), fastest = step_.h * fastest_correction();
+        const double taken = far > fastest ? fastest / far : 1;
+        out_.bias.resize(out_.size);
+        for (int i = 0; i < out_.size; ++i)
+            out_.bias[i] = -((is_off(i) ? taken : 1) * now[i] + bends[i]) / step_.h;
+    }
+
+    void hold(std::uint16_t held) {
+        out_.set = ImpulseSet::kAll;
+        const RowVector all_bends = bends();
+        RowVector now(coordinates_.size), bends(coordinates_.size);
+        for (int i = 0; i < coordinates_.size; ++i) {
+            if ((held >> i & 1) == 0) continue;
+            // Unit wrenches are orthogonal, or nearly so, and wrenches are told by them.
+            const Wrench& row = coordinates_.rows[static_cast<std::size_t>(i)];
+            const double factor = 1 / std::hypot(row.impulse.norm(), norm(row.moment));
+            now[out_.size] = factor * coordinates_.values[i];
+            bends[out_.size] = factor * all_bends[i];
+            add_row(i, factor);
+        }
+        aim(now, bends);
+    }
+
+    /// Each towards its nearer end.
+    void limit() {
+        out_.set = ImpulseSet::kHalfLine;
+        const RowVector all_bends = bends();
+        const auto size = static_cast<Eigen::Index>(joint_.limits.size());
+        RowVector now(size), bends(size);
+        for (const auto& [coordinate, low, high] : joint_.limits) {
+            const double value = coordinates_.values[coordinate];
+            const bool at_low = value - low < high - value;
+            const double factor = at_low ? 1 : -1, end = at_low ? low : high;
+            now[out_.size] = factor * (value - end);
+            bends[out_.size] = factor * all_bends[coordinate];
+            add_row(coordinate, factor);
+        }
+        aim(now, bends);
+    }
+
+    /// From the force at the mean of the sub-step's ends, x + h/4 (v1 - v0) and (v0 + v1) / 2 for
+    /// the coordinate x now and its velocities before and after.
+    void drive(const JointDrive& drive) {
+        out_.set = ImpulseSet::kBox;
+        out_.most = step_.h * drive.most;
+        add_row(drive.coordinate, 1);
+        const double h = step_.h, spring = 0.25 * h * h * drive.stiffness;
+        const double damper = 0.5 * h * drive.damping, gives = spring + damper;
+        if (drive.holds_speed) {
+            out_.bias = RowVector::Constant(1, drive.speed);
+        } else if (gives > 0) {
+            out_.compliance = 1 / gives;
+            const double off = coordinates_.values[drive.coordinate] - drive.target;
+            const double impulse = (spring - damper) * rates()[0] - h * drive.stiffness * off +
+                                   2 * damper * drive.speed;
+            out_.bias = RowVector::Constant(1, impulse / gives);
+        } else {
+            out_.most = 0;
+            out_.bias = RowVector::Zero(1);
+        }
+    }
+
+    const Simulation& simulation_;
+    StepData& step_;
+    const Joint& joint_;
+    Constraint& out_;
+    JointedBody a_, b_;
+    Coordinates coordinates_;
+};
+
+}  // namespace
+
+void pose_joints(const Simulation& simulation, StepData& step, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+        PosedPart(simulation, step, step.constraints[i]).pose();
+}
+
+}  // namespace tesserae

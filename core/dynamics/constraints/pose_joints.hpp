@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tesserae {
+
+struct Simulation;
+struct StepData;
+
+/// Lists the joints of bodies that are awake in step.constraints, without what pose_joints() sets.
+void list_joints(const Simulation& simulation, StepData& step);
+/// Poses the constraints in the range, with their last impulses, for the middle of the sub-step.
+///
+/// What is held aims at no error in the middle of the next sub-step, if bodies go straight on and
+/// turn freely until then. Together with the sub-step this is SHAKE (Ryckaert, Ciccotti, Berendsen,
+/// J. Comput. Phys. 23, 1977), of second order, which neither gains nor loses energy on the whole.
+/// A spring's force is that at the mean of the sub-step's ends (implicit midpoint rule), which
+/// keeps its energy at any stiffness.
+void pose_joints(const Simulation& simulation, StepData& step, std::size_t begin, std::size_t end);
+
+}  // namespace tesserae

@@ -1,0 +1,162 @@
+#include "scenes/load/joint_keys.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace tesserae::scenes {
+namespace {
+
+/// The plane names, in the order of Bivector.
+constexpr std::span<const std::string_view> kHingePlanes =
+    std::span(kCoordinateNames).subspan(kFirstAngle);
+/// Sine of the angle below which the two directions of a plane count as parallel.
+constexpr double kParallelSides = 1e-7;
+
+Vec4 axis_of(char letter) {
+    return Vec4::Unit(static_cast<Eigen::Index>(std::string_view("xyzw").find(letter)));
+}
+
+}  // namespace
+
+void JointTypeName::read(TableReader& reader, const char* key, JointTable& joint) const {
+    std::string expected = "expected one of";
+    for (const std::string_view name : kJointTypes) expected += fmt::format(" \"{}\"", name);
+    std::size_t type = 0;
+    if (!reader.require(key, expected) || !reader.read(key, type, kJointTypes)) return;
+    joint.type = static_cast<JointType>(type);
+    joint.has_type = true;
+}
+
+void PlaneOfHinge::read(TableReader& reader, const char* key, JointPlane& plane) const {
+    if (!reader.is_array(key)) {
+        std::size_t index = 0;
+        reader.read(key, index, kHingePlanes);
+        plane = {axis_of(kHingePlanes[index][0]), axis_of(kHingePlanes[index][1])};
+        return;
+    }
+    std::vector<Vec4> directions;
+    reader.read(key, directions);
+    if (directions.size() != 2)
+        reader.fail(key, fmt::format("has {} directions; expected two, four numbers each",
+                                     directions.size()));
+    for (const Vec4& direction : directions)
+        if (direction.cwiseAbs().maxCoeff() < kSmallest)
+            reader.fail(key, "expected two directions, not zero");
+    const Vec4 first = stable_normalized(directions[0]), second = stable_normalized(directions[1]);
+    if (!((second - second.dot(first) * first).norm() > kParallelSides))
+        reader.fail(key, "the two directions are parallel; expected two that span a plane");
+    plane = {directions[0], directions[1]};
+}
+
+void PlaneOfHinge::write(EffectiveWriter& out, const char* key, const JointPlane& plane) const {
+    for (const std::string_view name : kHingePlanes)
+        if (plane.first == axis_of(name[0]) && plane.second == axis_of(name[1]))
+            return out.key(key, name);
+    out.key(key, std::vector<Vec4>{plane.first, plane.second});
+}
+
+void FreeCoordinates::read(TableReader& reader, const char* key, std::uint16_t& free) const {
+    std::vector<std::string> given;
+    reader.read(key, given, kCoordinateNames);
+    if (given.empty())
+        reader.fail(key, "expected at least one coordinate; a joint without any is a \"weld\"");
+    for (std::size_t i = 0; i < kCoordinateNames.size(); ++i)
+        if (std::find(given.begin(), given.end(), kCoordinateNames[i]) != given.end())
+            free = static_cast<std::uint16_t>(free | 1 << i);
+}
+
+void FreeCoordinates::write(EffectiveWriter& out, const char* key, std::uint16_t free) const {
+    std::string text;
+    for (std::size_t i = 0; i < kCoordinateNames.size(); ++i)
+        if ((free >> i & 1) != 0)
+            text += (text.empty() ? "" : ", ") + toml_text(kCoordinateNames[i]);
+    out.line(key, "[" + text + "]");
+}
+
+void LimitsOf::read(TableReader& reader, std::string_view key, Vec2& limits) const {
+    if (!reader.read(key, limits, Rule::kFinite)) return;
+    if (!(limits[0] < limits[1])) reader.fail(key, "expected [low, high] with low < high");
+    if (limits[0] > 0 || limits[1] < 0)
+        reader.fail(key, "expected limits with 0 between them, where the joint is as placed");
+    if (coordinate >= kFirstAngle && limits.cwiseAbs().maxCoeff() > 180)
+        reader.fail(key, "expected angles from -180 to 180 degrees");
+}
+
+void complete(TableReader& reader, JointSpring& spring) {
+    if (!spring.frequency && !spring.stiffness) {
+        reader.require("frequency", "expected one in Hz, or a stiffness in N/m");
+        return;
+    }
+    if (spring.frequency && spring.stiffness)
+        reader.fail("stiffness", "there is a frequency too; expected only one of them");
+    if (spring.damping && !spring.frequency)
+        reader.fail("damping", "goes with a frequency; expected damping_force beside a stiffness");
+    if (spring.damping_force && !spring.stiffness)
+        reader.fail("damping_force", "goes with a stiffness; expected damping beside a frequency");
+    auto& damping = spring.frequency ? spring.damping : spring.damping_force;
+    if (!damping) damping = 0;
+}
+
+void SpringOf::read(TableReader& reader, std::string_view key, JointSpring& spring) const {
+    reader.read_inside(key, "{ frequency = 2, damping = 0.1 }", [&](TableReader& inside) {
+        spring_keys(spring, ReadKeys{inside});
+        inside.collect([&] { complete(inside, spring); });
+    });
+}
+
+std::string SpringOf::text(const JointSpring& spring) const {
+    EffectiveWriter lines;
+    spring_keys(spring, WriteKeys{lines});
+    return inline_table(lines);
+}
+
+namespace {
+
+void complete(TableReader& reader, JointMotor& motor) {
+    if (!motor.speed && !motor.target) {
+        reader.require("speed", "expected a speed, or a target");
+        return;
+    }
+    if (motor.speed && motor.target)
+        reader.fail("target", "there is a speed too; expected only one of them");
+    if (motor.speed) {
+        for (const char* key : {"frequency", "damping"})
+            if (reader.has(key)) reader.fail(key, "goes with a target, and there is a speed");
+        return;
+    }
+    if (!motor.frequency) motor.frequency = kMotorFrequency;
+    if (!motor.damping) motor.damping = kMotorDamping;
+}
+
+}  // namespace
+
+void MotorOf::read(TableReader& reader, std::string_view key, JointMotor& motor) const {
+    reader.read_inside(key, "{ speed = 1, max = 10 }", [&](TableReader& inside) {
+        motor_keys(motor, ReadKeys{inside}, coordinate);
+        inside.collect([&] { complete(inside, motor); });
+    });
+}
+
+std::string MotorOf::text(const JointMotor& motor) const {
+    EffectiveWriter lines;
+    motor_keys(motor, WriteKeys{lines}, coordinate);
+    return inline_table(lines);
+}
+
+void BreakOf::read(TableReader& reader, const char* key, JointBreak& breaks) const {
+    reader.read_inside(key, "{ force = 100, torque = 20 }", [&](TableReader& inside) {
+        break_keys(breaks, ReadKeys{inside});
+        if (!inside.has("force") && !inside.has("torque"))
+            inside.require("force", "expected one in N, or a torque in N m");
+    });
+}
+
+void BreakOf::write(EffectiveWriter& out, const char* key, const JointBreak& breaks) const {
+    EffectiveWriter lines;
+    break_keys(breaks, WriteKeys{lines});
+    out.line(key, inline_table(lines));
+}
+
+}  // namespace tesserae::scenes
