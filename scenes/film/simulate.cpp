@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 constexpr double kDegreesInRadian = 180 / std::numbers::pi;
 
 /// The unit in which a trajectory tells a joint's position.
-const char* position_unit(const Joint& joint, const Bodies& bodies) {
-    const int free = free_coordinate(joint, bodies);
+const char* position_unit(const Joint& joint) {
+    const int free = free_coordinate(joint);
     return free < 0 ? "" : is_angle(joint, free) ? "deg" : "m";
 }
 
@@ -49,8 +49,7 @@ TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
     header.motion_version = kMotionVersion;
     header.described = {scene.bodies.types, scene.bodies.type, scene.names};
     for (std::size_t i = 0; i < scene.joints.size(); ++i)
-        header.joints.push_back(
-            {scene.joint_names[i], position_unit(scene.joints[i], scene.bodies)});
+        header.joints.push_back({scene.joint_names[i], position_unit(scene.joints[i])});
     header.joint_parts = make_joints(scene.joints, scene.bodies).parts();
     return header;
 }
@@ -70,8 +69,8 @@ JointFacts joint_facts_of(const Scene& scene, const Bodies& bodies,
         facts.angular_impulse[i] = state.angular_impulse;
         facts.error[i] = state.error;
         facts.angular_error[i] = kDegreesInRadian * state.angular_error;
-        const int free = free_coordinate(joint, bodies);
-        facts.position[i] = (is_angle(joint, free) ? kDegreesInRadian : 1) * state.position;
+        const bool is_turning = is_angle(joint, free_coordinate(joint));
+        facts.position[i] = (is_turning ? kDegreesInRadian : 1) * state.position;
     }
     return facts;
 }

@@ -9,10 +9,9 @@ bool is_angle(const Joint& joint, int coordinate) {
     return std::holds_alternative<FrameJoint>(joint.kind) && coordinate >= 4;
 }
 
-int free_coordinate(const Joint& joint, const Bodies& bodies) {
-    const int size = coordinates_of(joint, bodies).size;
+int free_coordinate(const Joint& joint) {
     int free = -1;
-    for (int i = 0; i < size; ++i) {
+    for (int i = 0; i < size_of(joint); ++i) {
         if ((joint.held >> i & 1) != 0) continue;
         if (free >= 0) return -1;
         free = i;
@@ -34,7 +33,7 @@ JointState state_of(const Joint& joint, const Bodies& bodies, const Wrench& impu
     }
     state.error = std::sqrt(squared);
     state.angular_error = std::sqrt(angles_squared);
-    if (const int free = free_coordinate(joint, bodies); free >= 0)
+    if (const int free = free_coordinate(joint); free >= 0)
         state.position = coordinates.values[free];
     return state;
 }

@@ -18,7 +18,7 @@ struct JointState {
 JointState state_of(const Joint& joint, const Bodies& bodies, const Wrench& impulse);
 
 /// Returns the one coordinate of a joint that it does not hold; -1 if there are none or several.
-int free_coordinate(const Joint& joint, const Bodies& bodies);
+int free_coordinate(const Joint& joint);
 /// Returns whether a coordinate of a joint is an angle.
 bool is_angle(const Joint& joint, int coordinate);
 

@@ -82,7 +82,7 @@ class ConstraintRows {
                     apply(c, c.impulse = impulses_of(c, step_.joint_impulses[c.part]));
             } else {
                 const MotionOfState now(step_);
-                c.aim = row_velocities(c, now.left_out(c.a), now.left_out(c.b));
+                c.aim = row_velocities(c, now.at(c.a), now.at(c.b));
                 if (c.set == ImpulseSet::kHalfLine) c.aim = c.aim.cwiseMin(c.bias.cwiseMin(0));
                 c.aim -= left_out;
                 c.impulse.setZero(c.size);

@@ -23,17 +23,16 @@ constexpr double kFastSwing = 0.25;
 /// The part of a row's own response below which the block holds it, and its impulse moves nothing.
 constexpr double kHeldByBlock = 1e-6;
 
-BodyMotion motion_at(const StepData& step, BodyId id) {
-    return id == kWorld ? BodyMotion{} : motion_of(step, id);
-}
-
 Bivector unit_plane(int plane) {
     const auto at = [plane](int i) { return i == plane ? 1.0 : 0.0; };
     return {at(0), at(1), at(2), at(3), at(4), at(5)};
 }
 
 RowVector velocities_of(const StepData& step, const Constraint& c) {
-    return row_velocities(c, motion_at(step, c.a), motion_at(step, c.b));
+    const auto motion = [&](BodyId id) {
+        return id == kWorld ? BodyMotion{} : motion_of(step, id);
+    };
+    return row_velocities(c, motion(c.a), motion(c.b));
 }
 
 void apply_impulses(const Simulation& simulation, StepData& step, Constraint& c,

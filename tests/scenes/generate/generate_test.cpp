@@ -45,7 +45,7 @@ TEST(Generate, PyramidAndStacksStandAndAGasMoves) {
     EXPECT_GT(moved(generated_scene("gas", 40)), 1);
 }
 
-/// A bridge sags and a net hangs, and what is joined stays joined.
+/// What is joined stays joined, to each other and to the world: what is not falls 20 m.
 TEST(Generate, WhatIsJoinedStaysJoined) {
     for (const char* name : {"chain", "grid", "bridge"}) {
         const Scene scene = load_text(generated_scene(name, 50));
@@ -54,8 +54,7 @@ TEST(Generate, WhatIsJoinedStaysJoined) {
         double farthest = 0;
         for (const Joint& joint : scene.joints)
             farthest = std::max(farthest, state_of(joint, world.bodies(), {}).error);
-        EXPECT_LT(farthest, 0.01) << name;
-        EXPECT_GT((world.bodies().position[25] - scene.bodies.position[25]).norm(), 0.05) << name;
+        EXPECT_LT(farthest, 2e-3) << name;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/error.hpp"
@@ -309,6 +310,45 @@ TEST(Joint, IsNotTornWhereABodyIsStopped) {
             EXPECT_GT(world.bodies().position[2][0], 3) << ahead;
             EXPECT_LT(torn, 0.01) << ahead;
         }
+}
+
+/// An impact leaves the velocities of what joints hold as they are. Those are not 0: the ways of
+/// what whirls bend, for which the last load has aimed.
+TEST(Joint, KeepsItsRowsVelocitiesInAnImpact) {
+    for (const ColouredFrom& coloured_from : kAllWays) {
+        Bodies bodies;
+        const Bivector spin{40, 0, 0, 0, 0, 0};
+        for (const double y : {-0.5, 0.5})
+            add(bodies, sphere_type(0.3, 1, 0, 1), {0, y, 0, 0}, velocity_at(spin, {0, y, 0, 0}),
+                spin);
+        add(bodies, sphere_type(0.3, 2, 0, 1), {-2.2, 0.5, 0.1, -0.1}, {12, 0, 0, 0});
+        World world(make_simulation(bodies, without_gravity(),
+                                    {point_joint(0, {0, 0.5, 0, 0}, 1, {0, -0.5, 0, 0})}),
+                    coloured_from);
+        StageCopy before(Stage::kSolveImpacts), after(Stage::kIntegrateVelocities);
+        const auto rows_of = [](const StepData& step) -> RowVector {
+            const Constraint& c = step.constraints[0];
+            return row_velocities(c, motion_of(step, c.a), motion_of(step, c.b));
+        };
+        double fastest = 0;
+        int hits = 0;
+        for (int i = 0; i < 60; ++i) {
+            World again(
+                make_simulation(world.bodies(), without_gravity(), world.simulation().joints.all),
+                coloured_from);
+            again.memory() = world.memory();
+            world.observe(&before), again.observe(&after);
+            world.step(kStep), again.step(kStep);
+            if (before.step.velocity[2] == after.step.velocity[2]) continue;
+            ++hits;
+            fastest = std::max(fastest, rows_of(before.step).norm());
+            // Sweeps end at this part of the impact's speed.
+            EXPECT_LT((rows_of(after.step) - rows_of(before.step)).norm(), kImpactResidual * 12)
+                << i;
+        }
+        EXPECT_GT(hits, 0);
+        EXPECT_GT(fastest, 0.1);  // so that it could fail
+    }
 }
 
 /// A ball that hits one end of a dumbbell elastically: momentum and energy stay.
