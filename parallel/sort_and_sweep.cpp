@@ -52,6 +52,7 @@ double padded(const Bounds& bounds) {
 
 void SortAndSweep::overlapping_pairs(const Simulation& simulation,
                                      const std::vector<Bounds>& bounds, PairTable& pairs) {
+    simulation_ = &simulation;
     bounded_.clear();
     unbounded_.clear();
     for (BodyId id = 0; id < simulation.bodies.size(); ++id)
@@ -163,12 +164,14 @@ void SortAndSweep::sort_items(const Simulation& simulation, const std::vector<Bo
             const BodyId id = entries_[i].id;
             const Vec4& centre = bounds[id].centre;
             const double radius = padded(bounds[id]);
+            const TypeProperties& type = simulation.type_of(id);
             items_[i] = {centre,
                          radius,
                          entries_[i].lower,
                          centre[sorted_axis_] + radius,
                          id,
-                         simulation.type_of(id).movable};
+                         type.movable,
+                         type.collides_with != kAllGroups};
         }
     });
 }
@@ -312,6 +315,8 @@ void SortAndSweep::meet(Range items, Range others, double widest,
 void SortAndSweep::add_if_overlapping(const Item& a, const Item& b,
                                       std::vector<BodyPair>& pairs) const {
     if (!overlap({a.centre, a.radius}, {b.centre, b.radius}) || !(a.movable || b.movable)) return;
+    if ((a.choosy || b.choosy) && !collide(simulation_->type_of(a.id), simulation_->type_of(b.id)))
+        return;
     pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
 }
 
@@ -320,7 +325,7 @@ void SortAndSweep::add_unbounded(const Simulation& simulation, Range items,
     for (std::size_t i = items.begin; i < items.end; ++i)
         for (const BodyId other : unbounded_) {
             const Item& item = items_[i];
-            if (item.movable &&
+            if (item.movable && collide(simulation.type_of(item.id), simulation.type_of(other)) &&
                 reaches({item.centre, item.radius}, simulation.bodies.type_of(other).shape))
                 pairs.push_back({std::min(item.id, other), std::max(item.id, other)});
         }

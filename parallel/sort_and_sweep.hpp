@@ -73,6 +73,7 @@ class SortAndSweep {
         double radius, lower, upper;  ///< [m], the latter along the sorted axis
         BodyId id;
         bool movable;
+        bool choosy;  ///< it does not collide with every group
     };
     struct Cell {
         std::uint64_t cell;
@@ -103,6 +104,7 @@ class SortAndSweep {
                        std::vector<BodyPair>& pairs) const;
     void sort_pairs(std::size_t bodies, PairTable& sorted);
 
+    const Simulation* simulation_ = nullptr;   ///< of the search under way
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
     Vec4 origin_;                 ///< least coordinates of all centres [m]

@@ -227,6 +227,9 @@ void World::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
 void World::drop_corrections(Schedule& schedule) {
     const Observed stage(*this, Stage::kDropCorrections, step_.islands.size());
     schedule.drop_corrections(simulation_, step_);
+    if (simulation_.needs.damping)
+        schedule.for_each_range(simulation_.bodies.size(), kBodyGrain,
+                                [&](Range bodies) { damp_half(simulation_, step_, bodies); });
     if (step_.substep + 1 < simulation_.settings.substeps) keep_impulses(schedule);
 }
 

@@ -106,6 +106,8 @@ struct BodyTable {
     BodyType type;
     render::Appearance appearance;
     std::string material;  ///< empty: none was named
+    std::string group;
+    std::optional<std::vector<std::string>> collides_with;
     Vec4 position = Vec4::Zero(), velocity = Vec4::Zero();
     std::vector<Bivector> rotation{1};  ///< turns, one after the other [degrees]
     Bivector angular_velocity;          ///< [rad/s]
@@ -192,6 +194,32 @@ struct MaterialName {
     }
 };
 
+struct GroupName {
+    static constexpr const char* kAllowed = "any name";
+
+    void read(TableReader& reader, const char* key, std::string& name) const {
+        reader.read(key, name);
+    }
+    void write(EffectiveWriter& out, const char* key, const std::string& name) const {
+        if (!name.empty()) out.key(key, name);
+    }
+};
+struct GroupNames {
+    static constexpr const char* kType = "array of strings";
+    static constexpr const char* kAllowed = "names of groups; \"\" is that of bodies without one";
+
+    void read(TableReader& reader, const char* key, std::vector<std::string>& names) const {
+        reader.read(key, names, {});
+    }
+    void write(EffectiveWriter& out, const char* key, std::vector<std::string> names) const {
+        std::sort(names.begin(), names.end());
+        std::string text;
+        for (const std::string_view name : names)
+            text += (text.empty() ? "" : ", ") + toml_text(name);
+        out.line(key, "[" + text + "]");
+    }
+};
+
 /// [[body]] and [[lattice]]: what they are called and their shape
 void name_keys(auto& self, const auto& visit) {
     visit({"name", "",
@@ -228,6 +256,15 @@ void mass_keys(auto& self, const auto& visit) {
            "`1000.0`"},
           self, DensityOfBody{});
 }
+/// [[body]] and [[lattice]], if bounded: what else than contacts changes their motion
+void moving_keys(auto& self, const auto& visit) {
+    visit({"gravity_scale", "", "This part of gravity acts on the body; -1 makes it rise."},
+          self.type.gravity_scale, RealOrUnwritten{interval_of(Rule::kFinite), 1});
+    visit({"damping", "1/s",
+           "The body loses this part of its velocity and of its angular velocity a second, as if "
+           "in a viscous medium: alone it slows down as exp(-damping t)."},
+          self.type.damping, RealOrUnwritten{interval_of(Rule::kNonNegative)});
+}
 /// [[body]] and [[lattice]]: how they touch and look
 void surface_keys(auto& self, const auto& visit, const MaterialNumbers& materials) {
     visit({"friction", "",
@@ -246,6 +283,13 @@ void surface_keys(auto& self, const auto& visit, const MaterialNumbers& material
            "Contacts cannot change what is named here; with a velocity the body moves at it, and "
            "nothing stops it."},
           self.type, Flags<BodyType>{kFixed});
+    visit({"group", "", "The body is of the group of this name; see collides_with."}, self.group,
+          GroupName{});
+    visit({"collides_with", "",
+           "The body has contacts with bodies of these groups only, and only if they have contacts "
+           "with its own.",
+           "all groups"},
+          self.collides_with, GroupNames{});
     visit({"material", "", "The body looks as the material of this name says.", "a grey of 0.8"},
           self.material, MaterialName{materials});
     visit({"visible", "", "The body is seen and casts shadows."}, self.appearance.visible);

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "scenes/load/body_keys.hpp"
+#include "scenes/load/group_numbers.hpp"
 #include "scenes/load/hash.hpp"
 #include "scenes/process/memory.hpp"
 
@@ -127,7 +128,7 @@ void refuse_motion(TableReader& reader, BodyTable& body) {
                                               key.name));
         });
     };
-    placing_keys(body, refuse), mass_keys(body, refuse);
+    placing_keys(body, refuse), mass_keys(body, refuse), moving_keys(body, refuse);
 }
 
 void set_mass(TableReader& reader, BodyTable& body) {
@@ -167,10 +168,11 @@ class BodyLoader {
         shape_keys(body, read);
         const bool bounded = is_bounded(body.shape);
         if (bounded)
-            placing_keys(body, read), mass_keys(body, read);
+            placing_keys(body, read), mass_keys(body, read), moving_keys(body, read);
         else
             refuse_motion(reader, body);
         surface_keys(body, read, materials_);
+        reader.collect([&] { groups_.set(reader, body.group, body.collides_with, body.type); });
         if (is_lattice) lattice_keys(body.lattice.emplace(), read, kMaxBodies - total_);
         if (is_lattice && !bounded)
             reader.collect([&] {
@@ -190,6 +192,8 @@ class BodyLoader {
         return body;
     }
 
+    /// @throws InputError   some body collides with a group that no body is of
+    void require_groups() const { groups_.require_all_met(); }
     /// Bodies of all tables read so far.
     std::uint64_t total() const { return total_; }
 
@@ -212,7 +216,7 @@ class BodyLoader {
         // What follows is the same for bodies of one type.
         const std::size_t start = out_.text().size();
         shape_keys(body, write);
-        if (bounded) mass_keys(body, write);
+        if (bounded) mass_keys(body, write), moving_keys(body, write);
         surface_keys(body, write, materials_);
         const std::uint32_t type = type_number(body, std::string_view(out_.text()).substr(start));
 
@@ -310,6 +314,7 @@ class BodyLoader {
     /// By shape and parameters.
     std::unordered_map<std::string, std::shared_ptr<const HullBody>> hulls_;
     std::unordered_set<std::string> names_;
+    GroupNumbers groups_;
     std::unordered_map<std::array<std::uint64_t, 2>, std::uint32_t, FirstWord> types_;
 };
 
@@ -352,6 +357,7 @@ void load_bodies(TableReader& root, const Origin& origin, const SceneText& text,
     for (std::size_t i = 0; i < lattices.size(); ++i)
         errors.collect(
             [&] { lattice_tables.push_back(loader.read(*lattices[i], origin, true, i)); });
+    if (errors.is_empty()) errors.collect([&] { loader.require_groups(); });
     errors.require_none();
     require_memory((loader.total() - number) * kBytesPerBody, loader.total(), origin);
     loader.reserve();

@@ -186,7 +186,8 @@ ReferenceTable body_table() {
         {}};
     table.parts.push_back(part_of("", [&](const DescribeKeys& visit) {
         name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
-        mass_keys(body, visit), surface_keys(body, visit, MaterialNumbers());
+        mass_keys(body, visit), moving_keys(body, visit),
+            surface_keys(body, visit, MaterialNumbers());
     }));
     add_shapes(table.parts, std::make_index_sequence<std::variant_size_v<Shape>>());
     return table;

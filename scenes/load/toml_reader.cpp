@@ -379,12 +379,14 @@ bool TableReader::read(std::string_view key, std::vector<std::string>& values,
     if (node == nullptr) return false;
     const auto* array = node->as_array();
     if (array == nullptr)
-        fail_at(*node, key, fmt::format("wrong type; expected an array of {}", listed(allowed)));
+        fail_at(*node, key,
+                fmt::format("wrong type; expected an array of {}",
+                            allowed.empty() ? "strings" : listed(allowed)));
     values.clear();
     for (std::size_t i = 0; i < array->size(); ++i) {
         const std::string element = fmt::format("{}[{}]", key, i);
         values.push_back(text_of(*array->get(i), element));
-        require_known(values.back(), *array->get(i), element, allowed);
+        if (!allowed.empty()) require_known(values.back(), *array->get(i), element, allowed);
         if (std::find(values.begin(), values.end() - 1, values.back()) != values.end() - 1)
             fail_at(*array->get(i), element, "is listed twice");
     }

@@ -97,6 +97,7 @@ class TableReader {
     bool read(std::string_view key, std::array<std::int64_t, 2>& values, Rule rule);
     /// An array of exactly so many integers.
     bool read(std::string_view key, std::span<std::int64_t> values, IntegerRange range);
+    /// @param allowed   empty: any
     bool read(std::string_view key, std::vector<std::string>& values,
               std::span<const std::string_view> allowed);
     /// One of the names; the value is its index.

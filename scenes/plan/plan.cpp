@@ -63,8 +63,8 @@ bool any_motion(const Scene& scene) {
     for (BodyId id = 0; id < bodies.size(); ++id) {
         const BodyType& type = bodies.type_of(id);
         if (!is_bounded(type.shape)) continue;
-        if ((falls && !type.fixed_position) || !bodies.velocity[id].isZero(0) ||
-            !(bodies.angular_velocity[id] == Bivector{}))
+        if ((falls && !type.fixed_position && type.gravity_scale != 0) ||
+            !bodies.velocity[id].isZero(0) || !(bodies.angular_velocity[id] == Bivector{}))
             return true;
         // Even without gravity, overlapping bodies push each other apart, and springs pull.
         if (bodies.is_movable(id) && (bodies.size() > 1 || is_driven)) return true;

@@ -72,8 +72,12 @@ void check(const Bodies& bodies, SortAndSweep& sort_and_sweep, Threads& threads)
             const double distance = (step.position[a] - step.position[b]).norm();
             if (distance > p->radius + q->radius) continue;
             const BodyPair pair{a, b};
-            ASSERT_TRUE(std::binary_search(step.pairs.begin(), step.pairs.end(), pair))
+            const BodyType &of_a = bodies.type_of(a), &of_b = bodies.type_of(b);
+            const bool collide = (of_a.collides_with >> of_b.group) % 2 == 1 &&
+                                 (of_b.collides_with >> of_a.group) % 2 == 1;
+            ASSERT_EQ(std::binary_search(step.pairs.begin(), step.pairs.end(), pair), collide)
                 << a << " " << b;
+            ASSERT_EQ(std::binary_search(found.begin(), found.end(), pair), collide);
         }
 }
 
@@ -91,6 +95,8 @@ TEST(SortAndSweep, FindsThePairsThatTestingAllFinds) {
             BodyType type = sphere_type(std::pow(10.0, 2 * unit(engine) - 2));  // 1 cm to 1 m
             type.fixed_position = engine() % 6 == 0;
             type.fixed_rotation = engine() % 2 == 0;
+            type.group = engine() % 5;
+            if (engine() % 3 == 0) type.collides_with = engine();
             Vec4 x;
             for (int k = 0; k < 4; ++k) x[k] = size * unit(engine) * (k == round % 4 ? 1 : 0.3);
             const Vec4 v{100 * unit(engine) * (engine() % 8 == 0), 0, 0, 0};

@@ -41,6 +41,7 @@ Needs needs_of(const Bodies& bodies, std::span<const TypeProperties> types) {
     needs.turning = any([](const auto& type) { return !(type.inverse_inertia == Bivector{}); });
     for (BodyId id = 0; id < bodies.size() && !needs.turning; ++id)
         needs.turning = turns(bodies.rotor[id], bodies.angular_velocity[id]);
+    needs.damping = any([](const auto& type) { return type.damping + type.angular_damping > 0; });
     needs.rims = needs.turning && any([](const auto& type) { return type.has_rim; });
     return needs;
 }

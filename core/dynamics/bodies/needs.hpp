@@ -22,6 +22,7 @@ struct Needs {
     bool manifolds = true;  ///< kept manifolds: two bodies have flat faces only
     bool turning = true;    ///< rotors and angular velocities: some body turns, or contacts
                             ///< can turn it
+    bool damping = true;    ///< damped velocities: the motion of some body is damped
 };
 
 /// Returns what the steps of these bodies need.

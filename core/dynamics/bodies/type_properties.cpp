@@ -35,6 +35,8 @@ TypeProperties properties_of(const BodyType& type, bool jointed) {
     p.friction = type.friction;
     p.rolling_friction = type.rolling_friction;
     p.restitution = type.restitution;
+    p.group = type.group;
+    p.collides_with = type.collides_with;
     p.slop = std::numeric_limits<double>::infinity();
     p.fixed = type.fixed_position || type.fixed_rotation;
     p.bounded = is_bounded(type.shape);
@@ -57,8 +59,12 @@ TypeProperties properties_of(const BodyType& type, bool jointed) {
     // A 16-cell is as wide as a ball along all its axes.
     p.arm = p.flat || least_half_size < p.radius ? p.radius : 0;
     p.movable = is_movable(type);
-    p.falls = !type.fixed_position;
-    if (!type.fixed_position) p.inverse_mass = 1 / type.mass;
+    if (!type.fixed_position) {
+        p.inverse_mass = 1 / type.mass;
+        p.gravity_scale = type.gravity_scale;
+        p.damping = type.damping;
+    }
+    if (!type.fixed_rotation) p.angular_damping = type.damping;
     const bool slips_round = p.arm == 0 && type.friction == 0 && !jointed;
     if (!type.fixed_rotation && !slips_round) p.inverse_inertia = inverse(p.inertia);
     const double first = p.inverse_inertia.xy;

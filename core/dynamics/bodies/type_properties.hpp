@@ -23,12 +23,16 @@ struct TypeProperties {
     bool has_axes = false;  ///< the principal axes differ from the body's
     Rotor axes;             ///< from principal axes to the body's
     bool bounded = false;
-    bool flat = false;     ///< has flat faces only
-    bool has_rim = false;  ///< is a product of balls
-    bool movable = false;  ///< contacts can change its motion
-    bool fixed = false;    ///< its position or its rotation is fixed
-    bool falls = false;    ///< gravity acts on it
-    double radius = 0;     ///< of the bounding sphere about the centre [m]
+    bool flat = false;           ///< has flat faces only
+    bool has_rim = false;        ///< is a product of balls
+    bool movable = false;        ///< contacts can change its motion
+    bool fixed = false;          ///< its position or its rotation is fixed
+    double gravity_scale = 0;    ///< part of gravity that acts on it; 0 if the position is fixed
+    double damping = 0;          ///< of its velocity [1/s]; 0 if the position is fixed
+    double angular_damping = 0;  ///< of its angular velocity [1/s]; 0 if the rotation is fixed
+    std::uint8_t group = 0;
+    std::uint64_t collides_with = kAllGroups;  ///< a bit for each group
+    double radius = 0;                         ///< of the bounding sphere about the centre [m]
     double arm = 0;  ///< greatest surface speed towards another body per angular speed [m]; 0 for a
                      ///< hypersphere
     double slop = 0;  ///< allowed overlap [m]; infinite if unbounded

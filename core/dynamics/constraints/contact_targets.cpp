@@ -10,7 +10,8 @@ namespace {
 
 /// Approach::slowest
 double slowest_impact(const StepData& step, const TypeProperties& a, const TypeProperties& b) {
-    const double slowest = a.falls || b.falls ? kRestitutionKicks * step.kick : 0;
+    const double kick = std::max(std::abs(a.gravity_scale), std::abs(b.gravity_scale)) * step.kick;
+    const double slowest = kRestitutionKicks * kick;
     if (std::max(a.restitution, b.restitution) > 0) return slowest;
     return std::max(slowest, kStill * (std::min(a.slop, b.slop) / kSlop));
 }
@@ -23,7 +24,7 @@ Approach approach_of(const Simulation& simulation, const StepData& step, const C
     Approach approach;
     approach.e = std::max(a.restitution, b.restitution);
     approach.slowest = slowest_impact(step, a, b);
-    approach.g = (a.falls - b.falls) * contact.normal.dot(gravity);
+    approach.g = (a.gravity_scale - b.gravity_scale) * contact.normal.dot(gravity);
     approach.through = 0.5 * half_size * approach.e * approach.e;  // as is the energy at stake
     return approach;
 }

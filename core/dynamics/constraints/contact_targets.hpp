@@ -108,7 +108,7 @@ inline TurningOf turning_of(const Simulation& simulation, BodyId a, BodyId b) {
 /// takes gravity's part back.
 inline Vec4 velocity_before_gravity(const Simulation& simulation, const StepData& step, BodyId a,
                                     BodyId b) {
-    const double kicks = simulation.type_of(b).falls - simulation.type_of(a).falls;
+    const double kicks = simulation.type_of(b).gravity_scale - simulation.type_of(a).gravity_scale;
     return step.velocity[b] - step.velocity[a] - kicks * step.h * simulation.settings.gravity;
 }
 

@@ -18,7 +18,7 @@ Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a,
     double speed = relative;
     if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
     if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
-    if (type_a.falls != type_b.falls) speed += step.kick;
+    speed += std::abs(type_b.gravity_scale - type_a.gravity_scale) * step.kick;
     const double slop = std::min(type_a.slop, type_b.slop), margin = slop + step.h * speed;
     // What would sink in deeper than this is stopped where it touches.
     const double most = 2 * kDeepest / kSlop * slop;

@@ -20,6 +20,7 @@ bool is_pair_of_overlapping(const Simulation& simulation, const StepData& step, 
     const TypeProperties& type_a = simulation.type_of(a);
     const TypeProperties& type_b = simulation.type_of(b);
     if (!type_a.movable && !type_b.movable) return false;
+    if (!collide(type_a, type_b)) return false;
     if (!step.asleep.empty() && !is_active(simulation, step, a) && !is_active(simulation, step, b))
         return false;
     if (!type_a.bounded) return reaches(step.bounds[b], simulation.bodies.type_of(a).shape);

@@ -16,9 +16,9 @@ bool reaches(const Bounds& bounded, const Shape& unbounded);
 /// Returns whether two bodies whose bounds overlap are a pair, see is_pair().
 bool is_pair_of_overlapping(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
 
-/// Returns whether the narrow phase has to look at bodies a < b: contacts can move at least one, at
-/// least one is awake or driven, and both can be at one place within the step. Every way of finding
-/// pairs decides by this.
+/// Returns whether the narrow phase has to look at bodies a < b: their groups collide, contacts can
+/// move at least one, at least one is awake or driven, and both can be at one place within the
+/// step. Every way of finding pairs decides by this.
 inline bool is_pair(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
     return overlap(step.bounds[a], step.bounds[b]) &&  // the unbounded's are infinite
            is_pair_of_overlapping(simulation, step, a, b);

@@ -24,7 +24,7 @@ double potential_energy(const Bodies& bodies, const Vec4& gravity) {
     for (BodyId id = 0; id < bodies.size(); ++id) {
         const BodyType& type = bodies.type_of(id);
         if (is_bounded(type.shape) && !type.fixed_position)
-            sum -= type.mass * gravity.dot(bodies.position[id]);
+            sum -= type.mass * type.gravity_scale * gravity.dot(bodies.position[id]);
     }
     return sum;
 }

@@ -8,7 +8,8 @@ namespace tesserae {
 /// whose rotation is free [J], in the order of the bodies.
 double kinetic_energy(const Bodies& bodies);
 
-/// Sum of -m g . x over bounded bodies whose position is free [J], in the order of the bodies.
+/// Sum of -m g . x times the gravity_scale over bounded bodies whose position is free [J], in the
+/// order of the bodies.
 double potential_energy(const Bodies& bodies, const Vec4& gravity);
 
 }  // namespace tesserae

@@ -106,7 +106,7 @@ void IslandBuilder::weigh_islands(const Simulation& simulation, Islands& islands
         if (!(type.inverse_mass > 0)) continue;
         least_mass_[island] = std::min(least_mass_[island], type.mass);
         most_mass_[island] = std::max(most_mass_[island], type.mass);
-        if (type.falls) islands.falling_mass[island] += type.mass;
+        islands.falling_mass[island] += std::abs(type.gravity_scale) * type.mass;
     }
 }
 

@@ -45,9 +45,10 @@ void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& sc
     for (const BodyId id : stopped_) {
         const FreePath::State state = FreePath(simulation, step, id).at(stop_[id]);
         step.position[id] = state.position;
-        if (simulation.type_of(id).falls)
-            step.velocity[id] *= kept_speed(simulation.settings.gravity, step.h, step.velocity[id],
-                                            stop_[id] / (0.5 * step.h), half);
+        const Vec4 gravity = simulation.type_of(id).gravity_scale * simulation.settings.gravity;
+        if (!gravity.isZero(0))
+            step.velocity[id] *=
+                kept_speed(gravity, step.h, step.velocity[id], stop_[id] / (0.5 * step.h), half);
         if (!simulation.needs.turning) continue;
         step.rotor[id] = state.rotor;
         step.angular_velocity[id] = state.angular_velocity;

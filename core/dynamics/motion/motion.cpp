@@ -1,6 +1,7 @@
 #include "core/dynamics/motion/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/dynamics/motion/free_path.hpp"
@@ -41,7 +42,7 @@ void for_twos(Range bodies, const Visit& visit) {
 double reach(const Simulation& simulation, const StepData& step, BodyId id, double time) {
     const TypeProperties& type = simulation.type_of(id);
     double speed = step.velocity[id].norm();
-    if (type.falls) speed += time * simulation.settings.gravity.norm();
+    speed += time * std::abs(type.gravity_scale) * simulation.settings.gravity.norm();
     return type.radius + type.slop + time * speed;
 }
 
@@ -58,6 +59,7 @@ bool advance_first_half(const Simulation& simulation, StepData& step, Range bodi
             step.rotor[i] = last.rotor[i];
             step.angular_velocity[i] = last.angular_velocity[i];
         }
+        if (simulation.needs.damping) damp_half(simulation, step, some);
         advance_half(simulation, step, some);
         for (std::size_t i = some.begin; i < some.end; ++i) {
             const auto id = static_cast<BodyId>(i);
@@ -88,7 +90,18 @@ void integrate_velocities(const Simulation& simulation, StepData& step, Range bo
     const Vec4 change = step.h * simulation.settings.gravity;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const auto id = static_cast<BodyId>(i);
-        if (simulation.type_of(id).falls && !is_asleep(step, id)) step.velocity[id] += change;
+        const double scale = simulation.type_of(id).gravity_scale;
+        if (scale != 0 && !is_asleep(step, id)) step.velocity[id] += scale * change;
+    }
+}
+
+void damp_half(const Simulation& simulation, StepData& step, Range bodies) {
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const TypeProperties& type = simulation.type_of(static_cast<BodyId>(i));
+        if (type.damping > 0) step.velocity[i] *= std::exp(-0.5 * step.h * type.damping);
+        if (type.angular_damping > 0 && simulation.needs.turning)
+            step.angular_velocity[i] =
+                std::exp(-0.5 * step.h * type.angular_damping) * step.angular_velocity[i];
     }
 }
 

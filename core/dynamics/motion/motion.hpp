@@ -18,8 +18,12 @@ bool advance_second_half(const Simulation& simulation, StepData& step, Range bod
 /// Writes step.inverse_inertia of a body for its present rotor. An isotropic body has none.
 void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id);
 
-/// Adds gravity's change of velocity over the whole sub-step, for bodies that fall and are awake.
+/// Adds gravity's change of velocity over the whole sub-step, for bodies that are awake.
 void integrate_velocities(const Simulation& simulation, StepData& step, Range bodies);
+
+/// Damps velocities over half a sub-step. This acts at both ends of a sub-step, where contacts do
+/// not: what rests has no velocity there, and its load is its whole weight.
+void damp_half(const Simulation& simulation, StepData& step, Range bodies);
 
 /// Writes step.bounds: each encloses where a body is in the middle of the sub-step and where its
 /// velocity and gravity take it until the first middle of the next step. A contact is then seen

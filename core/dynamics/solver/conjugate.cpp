@@ -204,7 +204,7 @@ BodySums weigh_warm_start(const ColouredStage& stage, Range bodies) {
                             1 / stage.mass_unit, coloured.inertias[i]);
         }
         twice_energy += twice_energy_of(coloured, i, load(coloured.changes[i]));
-        if (type.falls) fallen += 0.5 * type.mass / stage.mass_unit * kick_squared;
+        fallen += 0.5 * std::abs(type.gravity_scale) * type.mass / stage.mass_unit * kick_squared;
     }
     return {0.5 * total_of(twice_energy), fallen};
 }

@@ -69,7 +69,7 @@ void FirstLoads::list_supports(const Simulation& simulation, const StepData& ste
         const double part = up.dot(step.contacts.normal(run.begin));
         if (!(std::abs(part) > kUpward)) continue;
         const BodyId upper = part > 0 ? run.b : run.a, lower = part > 0 ? run.a : run.b;
-        if (known_[upper] != kStands || !simulation.type_of(upper).falls) continue;
+        if (known_[upper] != kStands || !(simulation.type_of(upper).gravity_scale > 0)) continue;
         supports_.push_back({up.dot(step.position[upper]), upper, lower,
                              static_cast<std::uint32_t>(r), std::abs(part)});
     }
@@ -78,7 +78,8 @@ void FirstLoads::list_supports(const Simulation& simulation, const StepData& ste
     });
     // From the ground up. Those on what does not stand fast are left out.
     std::erase_if(supports_, [&](const Support& s) {
-        if (simulation.type_of(s.lower).falls && (known_[s.lower] & kStandsFast) == 0) return true;
+        const bool can_give_way = simulation.type_of(s.lower).inverse_mass > 0;
+        if (can_give_way && (known_[s.lower] & kStandsFast) == 0) return true;
         known_[s.upper] |= kStandsFast;
         return false;
     });
@@ -123,7 +124,8 @@ void FirstLoads::share_out(const Simulation& simulation, StepData& step) {
         end = begin;
 
         const TypeProperties& type = simulation.type_of(body);
-        const double load = step.kick * type.mass + above_[load_[body]].impulse;
+        const double load =
+            step.kick * type.mass * type.gravity_scale + above_[load_[body]].impulse;
         // In radii of the body, so that sizes are alike.
         const double unit = 1 / type.radius;
         Eigen::Matrix<double, 5, 5> squares = Eigen::Matrix<double, 5, 5>::Zero();

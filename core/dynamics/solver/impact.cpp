@@ -6,16 +6,6 @@
 namespace tesserae {
 namespace {
 
-/// The product that of a motion with itself is twice its kinetic energy.
-double product(const Simulation& simulation, const StepData& step, BodyId id, const BodyMotion& a,
-               const BodyMotion& b) {
-    const TypeProperties& type = simulation.type_of(id);
-    double sum = type.inverse_mass > 0 ? type.mass * a.velocity.dot(b.velocity) : 0;
-    if (simulation.needs.turning && !(type.inverse_inertia == Bivector{}))
-        sum += dot(angular_momentum(type, step.rotor[id], a.angular_velocity), b.angular_velocity);
-    return sum;
-}
-
 /// Rounding of a sum of energies, as a part of them; what a compression may add that has not
 /// converged or is in float.
 constexpr double kEnergyRounding = 1e-12, kNotJammed = 1e-6;
@@ -52,9 +42,18 @@ Impact impact_of_runs(const Simulation& simulation, const StepData& step,
     return all;
 }
 
+double motion_product(const Simulation& simulation, const StepData& step, BodyId id,
+                      const BodyMotion& a, const BodyMotion& b) {
+    const TypeProperties& type = simulation.type_of(id);
+    double sum = type.inverse_mass > 0 ? type.mass * a.velocity.dot(b.velocity) : 0;
+    if (simulation.needs.turning && !(type.inverse_inertia == Bivector{}))
+        sum += dot(angular_momentum(type, step.rotor[id], a.angular_velocity), b.angular_velocity);
+    return sum;
+}
+
 double twice_kinetic_energy(const Simulation& simulation, const StepData& step, BodyId id,
                             const BodyMotion& motion) {
-    return product(simulation, step, id, motion, motion);
+    return motion_product(simulation, step, id, motion, motion);
 }
 
 bool can_jam(const Simulation& simulation, const Impact& impact) {
@@ -80,15 +79,15 @@ RestitutionSums restitution_of(const Simulation& simulation, const StepData& ste
         const ImpactMotion& m = step.impact_motion[id];
         const BodyMotion taken = m.before - m.compressed;
         const BodyMotion given = motion_of(step, id) - m.compressed;
-        sums.taken_squared += product(simulation, step, id, taken, taken);
-        sums.given_squared += product(simulation, step, id, given, given);
-        sums.lost += product(simulation, step, id, taken, m.before + m.compressed);
-        sums.cross += product(simulation, step, id, m.compressed, given);
-        sums.all += product(simulation, step, id, m.before, m.before);
+        sums.taken_squared += motion_product(simulation, step, id, taken, taken);
+        sums.given_squared += motion_product(simulation, step, id, given, given);
+        sums.lost += motion_product(simulation, step, id, taken, m.before + m.compressed);
+        sums.cross += motion_product(simulation, step, id, m.compressed, given);
+        sums.all += motion_product(simulation, step, id, m.before, m.before);
         const TypeProperties& type = simulation.type_of(id);
-        if (!type.falls) continue;
-        sums.work_taken += type.mass * kick.dot(taken.velocity);
-        sums.work_given += type.mass * kick.dot(given.velocity);
+        const double weight = type.mass * type.gravity_scale;
+        sums.work_taken += weight * kick.dot(taken.velocity);
+        sums.work_given += weight * kick.dot(given.velocity);
     }
     return sums;
 }

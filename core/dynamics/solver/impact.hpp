@@ -20,6 +20,10 @@ Impact impact_of_runs(const Simulation& simulation, const StepData& step,
 /// Returns the larger number of two Impacts, member by member.
 Impact larger_of(const Impact& a, const Impact& b);
 
+/// Returns the product of two motions of a body that is twice the kinetic energy if they are equal
+/// [J].
+double motion_product(const Simulation& simulation, const StepData& step, BodyId id,
+                      const BodyMotion& a, const BodyMotion& b);
 /// Returns twice the kinetic energy of a body [J].
 double twice_kinetic_energy(const Simulation& simulation, const StepData& step, BodyId id,
                             const BodyMotion& motion);

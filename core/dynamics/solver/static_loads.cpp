@@ -165,7 +165,8 @@ bool StaticLoad::creeps() {
         const auto [begin, end, a, b] = run(n);
         const Places places(*step_, run(n), coloured_);
         const Vec4 at = places.of(begin);
-        const double kicks = simulation_->type_of(b).falls - simulation_->type_of(a).falls;
+        const double kicks =
+            simulation_->type_of(b).gravity_scale - simulation_->type_of(a).gravity_scale;
         const Vec4 v = relative_velocity(*step_, a, at - step_->position[a], b,
                                          at - step_->position[b], simulation_->needs.turning);
         fastest = std::max(fastest, (v - kicks * kick).squaredNorm());

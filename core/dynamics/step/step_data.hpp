@@ -61,7 +61,7 @@ struct Islands {
                                              ///< see JointBlock
     std::vector<std::uint8_t> conjugates;    ///< of each island: its load goes along conjugate
                                              ///< directions, see has_conjugates()
-    std::vector<double> falling_mass;        ///< of each island: mass that gravity acts on [kg]
+    std::vector<double> falling_mass;        ///< of each island: masses times gravity_scale [kg]
     std::vector<std::uint32_t> first_row;    ///< of each island in StepData::rows, if not coloured
 
     std::size_t size() const { return first.size() - 1; }

@@ -139,6 +139,8 @@ std::string other(const std::string&) { return "\"other\""; }
 std::string other(const std::string&, NotEmpty) { return "\"other\""; }
 std::string other(const std::string&, FileName) { return "\"other\""; }
 std::string other(const std::string&, const MaterialName&) { return "\"m\""; }
+std::string other(const std::string&, GroupName) { return "\"other\""; }
+std::string other(const std::vector<std::string>&, GroupNames) { return "[\"\"]"; }
 std::string other(std::integral auto value, IntegerRange) { return toml_text(value + 1); }
 std::string other(auto value, Names names) {
     return toml_text(names.names[static_cast<std::size_t>(value) == 0 ? 1 : 0]);
@@ -337,7 +339,7 @@ TEST(Keys, OfBodiesAndLatticesAreReadAndWritten) {
                              {"radius"}};
         expect_all_written(table, [&](const auto& visit) {
             name_keys(body, visit), shape_keys(body, visit), placing_keys(body, visit);
-            mass_keys(body, visit), surface_keys(body, visit, materials);
+            mass_keys(body, visit), moving_keys(body, visit), surface_keys(body, visit, materials);
             if (is_lattice) lattice_keys(lattice, visit, kMaxBodies);
         });
     }

@@ -24,7 +24,7 @@ struct Acting {
 /// Contacts do not change its velocity, or not its angular velocity.
 bool holds(const Simulation& simulation, BodyId id) {
     const TypeProperties& type = simulation.type_of(id);
-    return !type.falls || type.fixed;
+    return !(type.inverse_mass > 0) || type.fixed;
 }
 
 /// Adds up what acts in the sub-steps of a step.
@@ -60,15 +60,17 @@ class ActingObserver : public StageObserver {
     static Vec4 momentum(const Simulation& simulation, const StepData& step) {
         Vec4 sum = Vec4::Zero();
         for (BodyId id = 0; id < step.velocity.size(); ++id)
-            if (simulation.type_of(id).falls)
+            if (simulation.type_of(id).inverse_mass > 0)
                 sum += simulation.type_of(id).mass * step.velocity[id];
         return sum;
     }
     void add_gravity(const Simulation& simulation, const StepData& step) {
         for (BodyId id = 0; id < step.position.size(); ++id) {
             const bool asleep = !step.asleep.empty() && step.asleep[id] != kAwake;
-            if (!simulation.type_of(id).falls || asleep) continue;
-            const Vec4 impulse = simulation.type_of(id).mass * step.h * simulation.settings.gravity;
+            const TypeProperties& type = simulation.type_of(id);
+            if (type.gravity_scale == 0 || asleep) continue;
+            const Vec4 impulse =
+                type.mass * step.h * type.gravity_scale * simulation.settings.gravity;
             acting_.impulse += impulse;
             acting_.by_gravity += impulse.norm();
             acting_.angular += wedge(step.position[id], impulse);
@@ -80,8 +82,8 @@ class ActingObserver : public StageObserver {
             acting_.held |= holds(simulation, contact.a) || holds(simulation, contact.b);
             const Vec4 on_b = step.impulses[i].normal * contact.normal + step.impulses[i].tangent();
             acting_.most += on_b.norm();
-            if (simulation.type_of(contact.b).falls) acting_.impulse += on_b;
-            if (simulation.type_of(contact.a).falls) acting_.impulse -= on_b;
+            if (simulation.type_of(contact.b).inverse_mass > 0) acting_.impulse += on_b;
+            if (simulation.type_of(contact.a).inverse_mass > 0) acting_.impulse -= on_b;
         }
     }
 
