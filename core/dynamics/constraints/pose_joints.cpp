@@ -1,6 +1,7 @@
 #include "core/dynamics/constraints/pose_joints.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/dynamics/constants.hpp"
@@ -33,10 +34,12 @@ JointedBody placed(const StepData& step, BodyId id) {
     return {step.position[id], step.rotor[id], step.velocity[id], step.angular_velocity[id]};
 }
 
-/// Poses one constraint of a joint.
+/// One constraint of a joint.
+/// @tparam Out   Constraint, or a constant one that is posed
+template <class Out>
 class PosedPart {
   public:
-    PosedPart(const Simulation& simulation, StepData& step, Constraint& constraint)
+    PosedPart(const Simulation& simulation, const StepData& step, Out& constraint)
         : simulation_(simulation),
           step_(step),
           joint_(simulation.joints.all[constraint.joint]),
@@ -65,6 +68,10 @@ class PosedPart {
         set_response(simulation_, step_, out_);
         out_.impulse = impulses_of(out_, step_.joint_impulses[out_.part]);
     }
+    RowVector missed() const {
+        const RowVector now = held_values(coordinates_.values);
+        return held_values(values_at(step_.h)) - (1 - part_taken(now)) * now;
+    }
 
   private:
     /// Adds a multiple of a coordinate's row.
@@ -77,18 +84,32 @@ class PosedPart {
         return row_velocities(out_, {a_.velocity, a_.angular_velocity},
                               {b_.velocity, b_.angular_velocity});
     }
+    /// After a time in which the bodies go straight on and turn.
+    RowVector values_at(double time) const {
+        const JointedBody a = moved_on(a_, time), b = moved_on(b_, time);
+        return std::visit(
+            [&](const auto& kind) { return values_of(kind, a, b, coordinates_.turn); },
+            joint_.kind);
+    }
+    /// Unit wrenches are orthogonal, or nearly so, and wrenches are told by them.
+    double unit_of(int coordinate) const {
+        const Wrench& row = coordinates_.rows[static_cast<std::size_t>(coordinate)];
+        return 1 / std::hypot(row.impulse.norm(), norm(row.moment));
+    }
+    /// Of the rows that hold.
+    RowVector held_values(const RowVector& of_coordinates) const {
+        const std::uint16_t held = held_of(joint_);
+        RowVector values(std::popcount(held));
+        for (int i = 0, row = 0; i < coordinates_.size; ++i)
+            if ((held >> i & 1) != 0) values[row++] = unit_of(i) * of_coordinates[i];
+        return values;
+    }
     /// What the coordinates change in a sub-step in which the bodies go straight on and turn,
     /// beside what they do at their present rates: its even part, so that motions can be reversed.
     /// None in loops: bodies that hold each other from several sides would press each other apart
     /// by it.
     RowVector bends() const {
         if (simulation_.joints.in_loop[out_.joint] != 0) return RowVector::Zero(coordinates_.size);
-        const auto values_at = [&](double time) {
-            const JointedBody a = moved_on(a_, time), b = moved_on(b_, time);
-            return std::visit(
-                [&](const auto& kind) { return values_of(kind, a, b, coordinates_.turn); },
-                joint_.kind);
-        };
         return 0.5 * (values_at(step_.h) + values_at(-step_.h)) - coordinates_.values;
     }
     /// Lengths by which a row's error is measured: a moment's acts at the bodies' radii.
@@ -106,37 +127,32 @@ class PosedPart {
             if (id != kWorld) slop = std::min(slop, simulation_.type_of(id).slop);
         return kFastestCorrection / kSlop * slop + step_.kick;
     }
+    bool is_off(double now) const { return out_.set == ImpulseSet::kAll || now < 0; }
+    /// The part of the rows' errors that a sub-step takes away.
+    double part_taken(const RowVector& now) const {
+        double squared = 0;
+        for (int i = 0; i < out_.size; ++i) {
+            const double arm = arm_of(out_.rows[static_cast<std::size_t>(i)]);
+            if (is_off(now[i])) squared += arm * arm * now[i] * now[i];
+        }
+        const double far = std::sqrt(squared), fastest = step_.h * fastest_correction();
+        return far > fastest ? fastest / far : 1;
+    }
     /// The rows aim at no distance after the sub-step.
     /// @param now     distances of the rows
     /// @param bends   see bends()
     void aim(const RowVector& now, const RowVector& bends) {
-        const auto is_off = [&](int i) { return out_.set == ImpulseSet::kAll || now[i] < 0; };
-        double squared = 0;
-        for (int i = 0; i < out_.size; ++i) {
-            const double arm = arm_of(out_.rows[static_cast<std::size_t>(i)]);
-            if (is_off(i)) squared += arm * arm * now[i] * now[i];
-        }
-        const double far = std::sqrt(squared), fastest = step_.h * fastest_correction();
-        const double taken = far > fastest ? fastest / far : 1;
+        const double taken = part_taken(now);
         out_.bias.resize(out_.size);
         for (int i = 0; i < out_.size; ++i)
-            out_.bias[i] = -((is_off(i) ? taken : 1) * now[i] + bends[i]) / step_.h;
+            out_.bias[i] = -((is_off(now[i]) ? taken : 1) * now[i] + bends[i]) / step_.h;
     }
 
     void hold(std::uint16_t held) {
         out_.set = ImpulseSet::kAll;
-        const RowVector all_bends = bends();
-        RowVector now(coordinates_.size), bends(coordinates_.size);
-        for (int i = 0; i < coordinates_.size; ++i) {
-            if ((held >> i & 1) == 0) continue;
-            // Unit wrenches are orthogonal, or nearly so, and wrenches are told by them.
-            const Wrench& row = coordinates_.rows[static_cast<std::size_t>(i)];
-            const double factor = 1 / std::hypot(row.impulse.norm(), norm(row.moment));
-            now[out_.size] = factor * coordinates_.values[i];
-            bends[out_.size] = factor * all_bends[i];
-            add_row(i, factor);
-        }
-        aim(now, bends);
+        for (int i = 0; i < coordinates_.size; ++i)
+            if ((held >> i & 1) != 0) add_row(i, unit_of(i));
+        aim(held_values(coordinates_.values), held_values(bends()));
     }
 
     /// Each towards its nearer end.
@@ -179,9 +195,9 @@ class PosedPart {
     }
 
     const Simulation& simulation_;
-    StepData& step_;
+    const StepData& step_;
     const Joint& joint_;
-    Constraint& out_;
+    Out& out_;
     JointedBody a_, b_;
     Coordinates coordinates_;
 };
@@ -191,6 +207,10 @@ class PosedPart {
 void pose_joints(const Simulation& simulation, StepData& step, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
         PosedPart(simulation, step, step.constraints[i]).pose();
+}
+
+RowVector missed_by(const Simulation& simulation, const StepData& step, const Constraint& held) {
+    return PosedPart(simulation, step, held).missed();
 }
 
 }  // namespace tesserae

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/dynamics/constraints/pose_joints.hpp"
 
 namespace tesserae {
 namespace {
@@ -20,6 +23,10 @@ constexpr int kSolutions = 3;
 /// The square of the frequency of a swing across the pulls, times (h/2)^2, from which on it gets
 /// geometric stiffness. Without, it is unstable from 1 on.
 constexpr double kFastSwing = 0.25;
+/// The most new aims of joints in a sweep, and the part of what they missed by before that they may
+/// miss by.
+constexpr int kAims = 3;
+constexpr double kNearer = 0.5;
 /// The part of a row's own response below which the block holds it, and its impulse moves nothing.
 constexpr double kHeldByBlock = 1e-6;
 
@@ -83,6 +90,7 @@ bool JointBlock::begin(const Simulation& simulation, StepData& step,
     list_stiffness(step);
     factorize();
     list_bounded(simulation, step);
+    if (cause == Cause::kLoad) gain_.begin(simulation, step, bodies_);
     return true;
 }
 
@@ -232,12 +240,14 @@ void JointBlock::apply(const Simulation& simulation, StepData& step) const {
 }
 
 /// With geometric stiffness the motion has moments of the pulls, too.
-void JointBlock::apply_motion(StepData& step) const {
+void JointBlock::apply_motion(StepData& step) {
     for (const Joint& joint : joints_) {
         Constraint& c = step.constraints[joint.constraint];
         for (int i = 0; i < c.size; ++i)
             c.impulse[i] += rows_[joint.first + static_cast<std::size_t>(i)].change;
     }
+    for (const auto& [body, part] : stiffness_)
+        gain_.add(body, roots_[body].motion_of(-part.dot(motion_[body]) * part));
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
         const BodyMotion motion = roots_[body].motion_of(motion_[body]);
         step.velocity[bodies_[body]] += motion.velocity;
@@ -285,18 +295,66 @@ double JointBlock::solve_bounded(const Simulation& simulation, StepData& step,
     return std::abs(change * bounded.response);
 }
 
+void JointBlock::solve_directly(const Simulation& simulation, StepData& step) {
+    for (int solution = 0; solution < kSolutions; ++solution) solve_direct(simulation, step);
+}
+
+/// Sets missed_by_, and returns the largest of it.
+double JointBlock::farthest_miss(const Simulation& simulation, const StepData& step) {
+    double farthest = 0;
+    missed_by_.resize(joints_.size());
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
+        const Constraint& c = step.constraints[joints_[i].constraint];
+        const bool aims_again =
+            c.set == ImpulseSet::kAll && simulation.joints.in_loop[c.joint] == 0;
+        missed_by_[i] = aims_again ? missed_by(simulation, step, c) : RowVector();
+        if (aims_again) farthest = std::max(farthest, missed_by_[i].cwiseAbs().maxCoeff());
+    }
+    return farthest;
+}
+
+/// Joints aim at where they hold if the bodies went on as before the load. Where they then miss,
+/// for they move otherwise now, they aim so that they do not (Newton's method). It fails where no
+/// motion holds them.
+void JointBlock::aim_again(const Simulation& simulation, StepData& step) {
+    fails_to_hold_ = false;
+    double missed = farthest_miss(simulation, step);
+    for (int i = 0; i < kAims && missed > step.h * simulation.settings.tolerance; ++i) {
+        aims_.clear();
+        for (std::size_t k = 0; k < joints_.size(); ++k) {
+            Constraint& c = step.constraints[joints_[k].constraint];
+            aims_.push_back(c.aim);
+            if (missed_by_[k].size() > 0) c.aim -= missed_by_[k] / step.h;
+        }
+        solve_directly(simulation, step);
+        const double before = std::exchange(missed, farthest_miss(simulation, step));
+        if (missed < kNearer * before) continue;
+        for (std::size_t k = 0; k < joints_.size(); ++k)
+            step.constraints[joints_[k].constraint].aim = aims_[k];
+        solve_directly(simulation, step);
+        fails_to_hold_ = true;
+        return;
+    }
+}
+
 double JointBlock::sweep(const Simulation& simulation, StepData& step, Pass pass) {
     double largest = 0;
     for (int solution = 0; solution < kSolutions && !joints_.empty(); ++solution) {
         const double left = solve_direct(simulation, step);
         if (solution == 0) largest = left;
     }
+    if (cause_ == Cause::kLoad && pass == Pass::kSolve) aim_again(simulation, step);
     for (const Bounded& bounded : bounded_) {
         const Constraint& c = step.constraints[bounded.constraint];
         if (pass == Pass::kCorrection && !c.is_firm()) continue;
         largest = std::max(largest, solve_bounded(simulation, step, bounded));
     }
     return largest;
+}
+
+void JointBlock::end_load(const Simulation& simulation, StepData& step) {
+    gain_.give_momentum_back(simulation, step, constraints_);
+    if (fails_to_hold_ || has_stiffness()) gain_.give_energy_back(simulation, step, constraints_);
 }
 
 }  // namespace tesserae

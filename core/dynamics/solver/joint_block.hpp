@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/dynamics/constraints/contact_targets.hpp"
+#include "core/dynamics/solver/joint_gain.hpp"
 #include "core/dynamics/solver/motion_roots.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
@@ -39,6 +40,8 @@ class JointBlock {
     /// Solves all rows at the bodies' present motion, and applies what their impulses change.
     /// @return the largest change of a row's velocity [m/s, rad/s]
     double sweep(const Simulation& simulation, StepData& step, Pass pass);
+    /// Takes back what a load has added to the bodies that joints do not: see JointGain.
+    void end_load(const Simulation& simulation, StepData& step);
 
     /// Returns whether bodies have got geometric stiffness.
     bool has_stiffness() const { return !stiffness_.empty(); }
@@ -79,9 +82,12 @@ class JointBlock {
     void solve();
     double answer_of(const Joint& joint, const Row& row) const;
     double solve_direct(const Simulation& simulation, StepData& step);
+    void solve_directly(const Simulation& simulation, StepData& step);
+    double farthest_miss(const Simulation& simulation, const StepData& step);
+    void aim_again(const Simulation& simulation, StepData& step);
     double solve_bounded(const Simulation& simulation, StepData& step, const Bounded& bounded);
     void apply(const Simulation& simulation, StepData& step) const;
-    void apply_motion(StepData& step) const;
+    void apply_motion(StepData& step);
 
     Cause cause_ = Cause::kLoad;
     std::vector<BodyId> bodies_;  ///< movable ones that have joints, ascending
@@ -94,6 +100,10 @@ class JointBlock {
     std::vector<std::pair<std::size_t, Part>> stiffness_;  ///< of a body: the sum of part part^T
     std::vector<Angles> pulls_;                            ///< K of every body
     std::vector<Part> motion_;
+    std::vector<RowVector> aims_;       ///< of joints_
+    std::vector<RowVector> missed_by_;  ///< of joints_; empty where they do not aim again
+    bool fails_to_hold_ = false;        ///< of the last sweep
+    JointGain gain_;
     BlockCholesky matrix_;
 };
 

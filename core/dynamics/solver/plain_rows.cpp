@@ -315,6 +315,7 @@ void PlainRows::leave_part_of_restitution(double part) {
 }
 
 void PlainRows::keep() {
+    if (block_ && cause_ == Cause::kLoad) block_->end_load(simulation_, step_);
     others_.keep(cause_);
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         if (cause_ == Cause::kImpact) {

@@ -127,9 +127,12 @@ Jointed clump(std::mt19937_64& random) {
     return of;
 }
 
+/// Joints aim as those of loops do: only a block aims again.
 StepData solved_by(const Jointed& of, const ColouredFrom& way, const PhysicsSettings& settings) {
     StageCopy copy(Stage::kFinishStep);
-    World world(make_simulation(of.bodies, settings, of.joints), way);
+    Simulation simulation = make_simulation(of.bodies, settings, of.joints);
+    simulation.joints.in_loop.assign(of.joints.size(), 1);
+    World world(std::move(simulation), way);
     world.observe(&copy);
     world.step(kStep);
     return copy.step;
