@@ -9,6 +9,8 @@ namespace tesserae::scenes {
 namespace {
 
 constexpr std::string_view kHashBegin = "<meta name=\"tesserae-scene\" content=\"";
+/// What a line of index.html has that is of use where there are joints only.
+constexpr std::string_view kForJoints = " data-for=\"joints\"";
 
 std::string_view page_source(std::string_view name) {
     for (const PageSource& there : page_sources())
@@ -38,13 +40,15 @@ void append_script(std::string& page, std::string_view line, std::string_view na
 
 }  // namespace
 
-std::string page_text(std::string_view hash, std::string_view scene, std::string_view poses) {
+std::string page_text(std::string_view hash, std::string_view scene, std::string_view poses,
+                      bool joints) {
     std::string page;
     std::string_view rest = page_source("index.html");
     while (!rest.empty()) {
         const auto length = std::min(rest.find('\n'), rest.size() - 1) + 1;
         const std::string_view line = rest.substr(0, length);
         rest.remove_prefix(length);
+        if (!joints && line.find(kForJoints) != std::string_view::npos) continue;
         if (const auto name = quoted_after(line, "<script src=\""); !name.empty()) {
             append_script(page, line, name);
         } else if (const auto shader = quoted_after(line, " src=\""); !shader.empty()) {

@@ -17,7 +17,9 @@ const std::vector<PageSource>& page_sources();
 /// @param hash    of the scene, 32 hexadecimal digits: by it a page is known again
 /// @param scene   as page_scene()
 /// @param poses   as PosePacker
-std::string page_text(std::string_view hash, std::string_view scene, std::string_view poses);
+/// @param joints  the page draws joints; else what index.html has for them is left out
+std::string page_text(std::string_view hash, std::string_view scene, std::string_view poses,
+                      bool joints);
 
 /// The scene's hash of a page that page_text() made, from its beginning; empty if it is none.
 std::string page_hash(std::string_view beginning);

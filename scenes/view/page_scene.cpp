@@ -127,6 +127,12 @@ Json lights_of(const render::Lights& lights) {
     return {{"suns", std::move(suns)}, {"lamps", std::move(lamps)}, {"sky", json_list(lights.sky)}};
 }
 
+Json joints_of(const Scene& scene, const std::vector<PageJoint>& joints) {
+    Json names = Json::array();
+    for (const PageJoint& joint : joints) names.push_back(scene.joint_names[joint.number]);
+    return {{"names", std::move(names)}, {"data", base64(joint_bytes(joints))}};
+}
+
 Json cameras_of(const std::vector<ViewMoment>& moments) {
     Json cameras = Json::array();
     const auto add = [&](const render::CameraDescription& c) {
@@ -143,7 +149,7 @@ Json cameras_of(const std::vector<ViewMoment>& moments) {
 }  // namespace
 
 std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moments,
-                       std::optional<double> near_slice) {
+                       std::optional<double> near_slice, const std::vector<PageJoint>& joints) {
     Hulls hulls;
     Json json = {{"name", scene.name}, {"bodies", scene.bodies.size()}};
     if (near_slice) json["near_slice"] = *near_slice;
@@ -170,6 +176,7 @@ std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moment
     json["materials"] = materials_of(scene);
     if (const std::string tints = tints_of(scene); !tints.empty()) json["tints"] = base64(tints);
     json["lights"] = lights_of(scene.lights);
+    if (!joints.empty()) json["joints"] = joints_of(scene, joints);
 
     // Names need not be UTF-8 where a file is damaged; ASCII only; no tag can begin.
     std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);

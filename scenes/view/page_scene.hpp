@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scenes/scene.hpp"
+#include "scenes/view/page_joints.hpp"
 
 namespace tesserae::scenes {
 
@@ -18,7 +19,8 @@ struct ViewMoment {
 /// text a scene holds stays text.
 /// @param near_slice   bodies that never come as near as this to the film's slice are not in the
 ///                     page [m]
+/// @param joints       that the page draws
 std::string page_scene(const Scene& scene, const std::vector<ViewMoment>& moments,
-                       std::optional<double> near_slice);
+                       std::optional<double> near_slice, const std::vector<PageJoint>& joints = {});
 
 }  // namespace tesserae::scenes

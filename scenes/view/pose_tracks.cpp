@@ -72,12 +72,21 @@ PoseRanges::PoseRanges(const Bodies& bodies, const std::vector<render::Appearanc
         const BodyType& type = bodies.type_of(id);
         BodyTrack track;
         track.id = id;
-        track.radius = bounding_radius(type.shape);
+        track.radius = track.reach = bounding_radius(type.shape);
         track.turns = shows_turning(type, materials[looks.material]);
         track.last = pose_numbers(Vec4::Zero(), Rotor{}, {});
         track.tolerance = track.from_slice = kMiss;
         tracks_.push_back(track);
     }
+}
+
+void PoseRanges::show_point(BodyId id, double distance) {
+    const auto track =
+        std::lower_bound(tracks_.begin(), tracks_.end(), id,
+                         [](const BodyTrack& other, BodyId wanted) { return other.id < wanted; });
+    if (track == tracks_.end() || track->id != id || !(distance > 0)) return;
+    track->turns = true;
+    track->reach = std::max(track->reach, distance);
 }
 
 void PoseRanges::add(const Bodies& bodies, const render::Camera& camera) {
@@ -113,7 +122,7 @@ TrackGrid grid_of(const BodyTrack& track) {
     }
     TrackGrid grid;
     grid.position_step = step_for(0.5 * track.tolerance, range[0]);
-    grid.turn_step = step_for(0.25 * track.tolerance / track.radius, range[1]);
+    grid.turn_step = step_for(0.25 * track.tolerance / track.reach, range[1]);
     for (std::size_t i = 0; i < 12; ++i) {
         if (i < kPositionNumbers)
             grid.position_low[i] = track.low[i];

@@ -30,6 +30,7 @@ constexpr double kPoseAccuracy = 0.25;
 struct BodyTrack {
     BodyId id = 0;
     double radius = 0;   ///< of its bounding sphere [m]
+    double reach = 0;    ///< how far from its centre points of it are shown [m]
     bool turns = false;  ///< its rotation shows
     PoseNumbers low, high, last;
     double tolerance = 0;      ///< by how much any of its points may be off [m]
@@ -63,6 +64,10 @@ class PoseRanges {
   public:
     PoseRanges(const Bodies& bodies, const std::vector<render::Appearance>& appearance,
                const std::vector<render::Material>& materials);
+
+    /// Has a point of a body shown, so far from its centre [m]: how the body turns is stored for
+    /// it. Nothing is done for bodies that are not visible. To be called before add().
+    void show_point(BodyId id, double distance);
 
     /// @param camera   the film's at that moment
     void add(const Bodies& bodies, const render::Camera& camera);

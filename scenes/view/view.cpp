@@ -15,6 +15,7 @@
 #include "scenes/timeline.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 #include "scenes/view/page.hpp"
+#include "scenes/view/page_joints.hpp"
 #include "scenes/view/page_scene.hpp"
 #include "scenes/view/pose_tracks.hpp"
 
@@ -53,6 +54,13 @@ class ViewPoses {
     }
 
     const std::vector<ViewMoment>& moments() const { return moments_; }
+    /// The last step at or before each moment.
+    std::vector<std::uint64_t> steps() const {
+        if (rows_) return rows_->steps();
+        std::vector<std::uint64_t> steps;
+        for (const FrameInstant& instant : instants_) steps.push_back(instant.step);
+        return steps;
+    }
     /// Valid until the next call.
     const Bodies& at(std::size_t moment) {
         if (poses_) return poses_->at(instants_[moment]);
@@ -81,7 +89,8 @@ class ViewPoses {
 
 void require_room(const Scene& scene, const PoseRanges& ranges, std::size_t moments,
                   const ViewOptions& options) {
-    const std::uint64_t bytes = PosePacker::bytes_of(ranges, moments);
+    const std::uint64_t bytes =
+        PosePacker::bytes_of(ranges, moments) + kPageJointBytes * scene.joints.size();
     const std::string what =
         fmt::format("{}: {} bodies at {} moments would take {} MB", scene.file.string(),
                     ranges.tracks().size(), moments, bytes / 1'000'000);
@@ -129,6 +138,7 @@ ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::
     };
 
     PoseRanges ranges(scene.bodies, scene.appearance, scene.materials);
+    show_anchors(scene, ranges);
     for_each_moment([&](const Bodies& bodies, const ViewMoment& moment) {
         ranges.add(bodies, render::Camera(moment.camera, scene.render.width, scene.render.height));
     });
@@ -137,8 +147,11 @@ ViewReport write_view(const Scene& scene, const fs::path& trajectory, const fs::
 
     PosePacker packer(ranges, moments.size());
     for_each_moment([&](const Bodies& bodies, const ViewMoment&) { packer.add(bodies); });
-    const std::string page = page_text(scene.hash, page_scene(scene, moments, options.near_slice),
-                                       packer.take_bytes(scene.bodies));
+    std::vector<PageJoint> joints = page_joints(scene, ranges.tracks());
+    if (!trajectory.empty()) find_broken(joints, scene, trajectory, poses.steps());
+    const std::string page =
+        page_text(scene.hash, page_scene(scene, moments, options.near_slice, joints),
+                  packer.take_bytes(scene.bodies), !joints.empty());
     write_file(file, page);
 
     ViewReport report;

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 
+import h5py
 import numpy
 import OpenImageIO as oiio
 from selenium.webdriver.common.action_chains import ActionChains
@@ -244,6 +245,91 @@ def check_controls(browser, program, folder):
     check_ghosts(browser)
 
 
+def line_pixels(browser, a, b):
+    """Colours along a line of the world, each the nearest to the line's own of a few pixels about
+    it; what is drawn over the picture, r g b a."""
+    return browser.run("""
+        const overlay = tesserae.page.overlay, copy = document.createElement("canvas");
+        copy.width = overlay.canvas.width, copy.height = overlay.canvas.height;
+        const pen = copy.getContext("2d", {willReadFrequently: true});
+        pen.drawImage(overlay.canvas, 0, 0);
+        const [a, b] = args.map((point) => overlay.project(point)), seen = [];
+        for (let i = 1; i < 8; ++i) {
+            const x = Math.round(a.x + (i / 8) * (b.x - a.x)), y = Math.round(a.y + (i / 8) * (b.y - a.y));
+            const all = pen.getImageData(x - 1, y - 1, 3, 3).data, brightness = (k) => all[k] + all[k + 1] + all[k + 2];
+            let best = 0;
+            for (let k = 4; k < 36; k += 4) if (brightness(k) > brightness(best)) best = k;
+            seen.push(Array.from(all.slice(best, best + 4)));
+        }
+        return seen""", a, b)
+
+
+def check_joints(browser, program, folder):
+    """Lines from centre to anchor to anchor to centre, as what they hold is seen."""
+    job = Job(program, folder, "jointed", scenes.jointed())
+    browser.open(job.view())
+    page = "tesserae.page"
+
+    def show(time, more=""):
+        browser.run(f"{page}.goTo({time}); {page}.showsFrame = false; {more}; {page}.drawUi(1)")
+
+    def drawn(a, b):
+        return min(pixel[3] for pixel in line_pixels(browser, a, b)) > 60
+
+    def centre(body):
+        return browser.run(f"return [...{page}.poses.position.subarray(4 * {body}, 4 * {body} + 4)]")
+
+    with h5py.File(job.page.with_suffix(".h5")) as file:
+        bodies = file["particles/bodies"]
+        times, rotors = bodies["position/time"][:], bodies["rotor/value"][:]
+        positions, broken = bodies["position/value"][:], file["joints/broken/value"][:]
+    show(0)
+    check(drawn((-2, 1, 0, 0), (-2.5, 1, 0, 0)) and drawn((0, 1, 0, 0), (-0.5, 1.5, 0, 0)) and
+          drawn((1.5, 1.5, 0, 0), (2.5, 0.25, 0, 0.8)) and drawn((2.5, 0.25, 0, 0.8), (2.5, 0, 0, 0.8)),
+          "joints are lines at the beginning")
+    check(not drawn((1, 0, 0, 0), (1, -1, 0, 0)), "and nothing is where there is none")
+    near = line_pixels(browser, (1.5, 1.5, 0, 0), (2.5, 0.25, 0, 0.8))
+    ghost = line_pixels(browser, (2.5, 0.25, 0, 0.8), (2.5, 0, 0, 0.8))[3]
+    check(near[0][1] > near[0][0] and ghost[0] > ghost[2] + 40 and near[-1][0] > near[-1][2] + 40,
+          f"the half at the body in the slice is green, that at the ghost in its colour: {near[0]} {near[-1]}")
+
+    # Both bodies have turned far by then: their ends stay at the world's points.
+    for time_shown in (0.7, 1.3):
+        show(time_shown)
+        ends = browser.run(f"""
+            const p = {page}, shown = p.view.shown();
+            return [0, 1].map((joint) => p.joints.pointOn(p.joints.b[joint], p.joints.onB, 4 * joint))""")
+        wanted = browser.run(f"return args.map((point) => {page}.overlay.project(point))",
+                             [-2.5, 1, 0, 0], [-0.5, 1.5, 0, 0])
+        off = max(abs(e[k] - w[k]) for e, w in zip(ends, wanted) for k in "xy")
+        row = int(numpy.argmin(numpy.abs(times - time_shown)))
+        turned = numpy.abs(rotors[row, 1] - rotors[0, 1]).max()
+        check(off < 0.5 and turned > 0.1, f"{time_shown} s: ends are {off:.2f} pixels off their places, "
+              f"the rotor has changed by {turned:.2f}")
+        check(drawn(centre(0), (-2.5, 1, 0, 0)) and drawn(centre(1), (-0.5, 1.5, 0, 0)), "and lines lead there")
+
+    # The thread is taut after 0.245 s; the next frame is that at 0.3 s.
+    first = times[numpy.argmax(broken[:, 3] > 0)]
+    check(0.2 < first < 0.301, f"the thread breaks after {first:.3f} s")
+    show(0.2)
+    check(drawn(centre(4), (-3, 1.5, 0, 0)), "it is drawn before that")
+    show(0.3)
+    check(not drawn(centre(4), (-3, 1.5, 0, 0)), "and not after")
+    show(0.3, f"{page}.options.chosen = 4")
+    text = browser.run("return document.getElementById('body-joints').textContent")
+    check(text == "thread (broken)", f"a chosen body's joints are named: {text}")
+    show(0, f"{page}.options.chosen = -1; {page}.panel.setGhosts(false, 1)")
+    check(not drawn((2.5, 0.25, 0, 0.8), (2.5, 0, 0, 0.8)) and drawn((-2, 1, 0, 0), (-2.5, 1, 0, 0)),
+          "without ghosts their lines are not there")
+    ActionChains(browser.driver).send_keys("j").perform()
+    show(0)
+    check(not drawn((-2, 1, 0, 0), (-2.5, 1, 0, 0)), "J takes lines away")
+
+    job = Job(program, folder, "joint-free", scenes.crossing())
+    page_text = job.view().read_text()
+    check("class JointLines" not in page_text, "a page without joints has nothing of them")
+
+
 def check_ghosts(browser):
     """The ball is 0.5 m off the slice at 0.5 s: a ghost that fades to nothing at that depth."""
     browser.run("tesserae.page.goTo(0.5); tesserae.page.options.shadows = false")
@@ -300,7 +386,7 @@ def main():
     check_size(program, folder)
     with Browser() as browser:
         for checks in (check_stills, check_motion, check_pile, check_hostile, check_looks, check_small,
-                       check_controls, check_speed):
+                       check_controls, check_joints, check_speed):
             start = time.time()
             checks(browser, program, folder)
             complaints = browser.complaints()

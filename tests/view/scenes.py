@@ -140,3 +140,72 @@ size = [1, 1, 1, 1]
 position = [2.7, 0, 0, 0]
 angular_velocity = { xw = 1, yz = 2 }
 """
+
+
+def jointed():
+    """Joints of all sorts of ends: a door on a hinge, a box on a swivel that turns fast, a spring
+    from a ball to a box beside the slice, and a weight whose thread breaks at once."""
+    return """
+[physics]
+duration = 2
+[render]
+frames_per_second = 10
+[camera]
+position = [0, 0, -8, 0]
+look_at = [0, 0, 0, 0]
+""" + LIGHT + """
+[[body]]
+name = "door"
+shape = "hyperbox"
+size = [1, 0.1, 0.4, 0.4]
+position = [-2, 1, 0, 0]
+[[body]]
+name = "spinner"
+shape = "hypersphere"
+radius = 0.3
+position = [0, 1, 0, 0]
+angular_velocity = { xy = 3 }
+[[body]]
+name = "nail"
+shape = "hypersphere"
+radius = 0.2
+position = [1.5, 1.5, 0, 0]
+fixed = ["position", "rotation"]
+[[body]]
+name = "beside"
+shape = "hyperbox"
+size = [0.5, 0.5, 0.5, 0.5]
+position = [2.5, 0, 0, 0.8]
+[[body]]
+name = "weight"
+shape = "hypersphere"
+radius = 0.2
+position = [-3, 1, 0, 0]
+[[joint]]
+name = "hinge"
+type = "hinge"
+a = "door"
+anchor = [-2.5, 1, 0, 0]
+plane = "xy"
+[[joint]]
+name = "arm"
+type = "point"
+a = "spinner"
+anchor = [-0.5, 1.5, 0, 0]
+[[joint]]
+name = "spring"
+type = "spring"
+a = "nail"
+b = "beside"
+anchor_b = [2.5, 0.25, 0, 0.8]
+frequency = 1
+damping = 0.1
+[[joint]]
+name = "thread"
+type = "rope"
+a = "weight"
+anchor_a = [-3, 1, 0, 0]
+anchor_b = [-3, 1.5, 0, 0]
+length = 0.8
+break = { force = 1 }
+"""

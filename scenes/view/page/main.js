@@ -19,6 +19,7 @@ class Page {
     this.coarseness = 1;   // of the last picture while something moved
     this.setTime(this.scene.times[0]);
     this.reach = this.extent();
+    if (this.scene.joints) this.joints = new JointLines(this);
     this.overlay = new Overlay(byId("overlay"), this.scene);
     this.timeline = new Timeline(byId("rows"), this.scene, this.poses);
     this.panel = new Panel(this);
@@ -175,7 +176,7 @@ class Page {
     this.draw();
     const shown = this.view.shown();
     const film = filmCamera(this.scene, this.poses, this.time);
-    this.overlay.draw(shown, layout, {showsFrame: this.showsFrame, showsPath: this.showsPath, film});
+    this.overlay.draw(shown, layout, {showsFrame: this.showsFrame, showsPath: this.showsPath, film, joints: this.joints});
     const slices = JSON.stringify(this.follows ? "film" : [shown.position, shown.fourth]);
     this.timeline.follow((moment) => this.sliceAt(moment), slices);
     this.panel.update();

@@ -83,7 +83,7 @@ class Navigation {
       Digit7: look([0, -1, 0, 0], [0, 0, 1, 0]), Numpad7: look([0, -1, 0, 0], [0, 0, 1, 0]),
       BracketLeft: shift(-1), BracketRight: shift(1), KeyR: () => page.resetSlice(),
       KeyN: () => document.body.classList.toggle("wide"), KeyG: () => byId("ghosts").click(),
-      Escape: () => (page.options.chosen = -1),
+      KeyJ: () => page.joints && byId("joints").click(), Escape: () => (page.options.chosen = -1),
     };
     return actions[code];
   }

@@ -12,13 +12,14 @@ class Overlay {
   /// @param shown   the camera, as View.shown()
   /// @param layout  width, height [CSS pixels], ratio of device pixels, margin, frame: the film
   ///                frame's rectangle [x, y, width, height]
-  draw(shown, layout, {showsFrame, showsPath, film}) {
+  draw(shown, layout, {showsFrame, showsPath, film, joints}) {
     const {canvas} = this, {width, height, ratio} = layout, pen = canvas.getContext("2d");
     canvas.width = Math.round(width * ratio), canvas.height = Math.round(height * ratio);
     canvas.style.width = `${width}px`, canvas.style.height = `${height}px`;
     pen.scale(ratio, ratio);
     this.shown = shown;
     this.layout = layout;
+    if (joints) joints.draw(pen, shown, layout);
     if (showsFrame) this.drawFrame(pen);
     if (showsPath) this.drawPath(pen, film);
     this.drawAxes(pen);

@@ -119,6 +119,7 @@ class Panel {
     const {page} = this, body = page.options.chosen;
     byId("body").hidden = body < 0;
     if (body < 0) return;
+    if (page.joints) say("body-joints", page.joints.textOf(body));
     const {poses, scene} = page, type = scene.types[poses.type[body]], isPlane = type.kind === "plane";
     // As many digits as are stored.
     const list = (v, accuracy) => {

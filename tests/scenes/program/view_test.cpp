@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenes/process/base64.hpp"
 #include "tests/scenes/program/program.hpp"
 
 namespace tesserae::scenes::testing {
@@ -77,6 +78,48 @@ position = [0, 0, 0, 5]
     EXPECT_EQ(bodies({"--near-slice", "3.9"}), 1);
     EXPECT_EQ(tesserae({"view", scene, "-o", folder.file("a.html"), "--near-slice", "-1"}).status,
               2);
+}
+
+/// A ball on a hinge, and one that breaks its rod after a quarter of a second's fall.
+TEST(View, HasJointsAndWhenTheyBreak) {
+    const Folder folder("view-joints");
+    const auto scene = folder.write("joints.toml", small_scene(0.5) + R"(
+[[body]]
+name = "wheel"
+shape = "hypersphere"
+radius = 0.2
+position = [5, 6, 0, 0]
+[[body]]
+name = "load"
+shape = "hypersphere"
+radius = 0.2
+position = [9, 6, 0, 0]
+[[joint]]
+name = "axle <1>"
+type = "hinge"
+a = "wheel"
+anchor = [5, 6.5, 0, 0]
+plane = "xy"
+[[joint]]
+name = "thread"
+type = "rope"
+a = "load"
+anchor_a = [9, 6, 0, 0]
+anchor_b = [9, 6.5, 0, 0]
+length = 0.8
+break = { force = 1 }
+)");
+    const Outcome view = tesserae({"view", scene, "-o", folder.file("a.html")});
+    ASSERT_EQ(view.status, 0) << view.err;
+    const std::string page = content(folder / "a.html");
+    const auto joints = scene_in(page)["joints"];
+    EXPECT_EQ(joints["names"], (nlohmann::json{"axle <1>", "thread"}));
+    EXPECT_EQ(joints["data"].get<std::string>().size(), 160u);  // 120 bytes as base64
+    // 0.3 m deep the rope is taut: after 0.245 s, before the sixth frame of 20 a second.
+    EXPECT_EQ(joints["data"].get<std::string>().substr(148),
+              base64(std::string("\0\xff\xff\xff\xff\5\0\0\0", 9)));
+    ASSERT_EQ(tesserae({"view", folder.file("a.h5"), "-o", folder.file("b.html")}).status, 0);
+    EXPECT_EQ(content(folder / "b.html"), page);
 }
 
 TEST(View, RefusesWhatItCannotDo) {

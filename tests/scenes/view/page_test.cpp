@@ -30,7 +30,7 @@ TEST(Base64, IsThatOfTheStandard) {
 }
 
 TEST(Page, NamesNoOtherFile) {
-    const std::string hash(32, 'a'), page = page_text(hash, "{}", "poses");
+    const std::string hash(32, 'a'), page = page_text(hash, "{}", "poses", true);
     for (const char* word : {" src=", "http:", "https:", "import ", "@import", "url(", "fetch("})
         EXPECT_EQ(page.find(word), std::string::npos) << word;
     EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
@@ -42,6 +42,15 @@ TEST(Page, NamesNoOtherFile) {
         if (source.name == "index.html") continue;
         EXPECT_NE(page.find(source.text), std::string::npos) << source.name;
     }
+}
+
+TEST(Page, WithoutJointsHasNothingOfThem) {
+    const std::string hash(32, 'a'), page = page_text(hash, "{}", "poses", false);
+    EXPECT_EQ(page.find("class JointLines"), std::string::npos);
+    EXPECT_EQ(page.find("id=\"joints\""), std::string::npos);
+    const std::string joints = page_text(hash, "{}", "poses", true);
+    EXPECT_NE(joints.find("class JointLines"), std::string::npos);
+    EXPECT_NE(joints.find("id=\"joints\""), std::string::npos);
 }
 
 /// Text that ends its own script would end the page's.
