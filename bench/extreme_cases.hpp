@@ -23,5 +23,7 @@ struct ExtremeCase {
 
 /// Minutes in all. `with_long` adds the one that takes the longest: 10^4 spheres at rest for 60 s.
 std::vector<ExtremeCase> extreme_cases(bool with_long);
+/// Scenes with joints, and a card house and an arch, which others publish as hard.
+std::vector<ExtremeCase> extreme_joints();
 
 }  // namespace tesserae::bench

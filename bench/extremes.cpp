@@ -1,11 +1,11 @@
 // Stiff and extreme scenes at the defaults: CSV on standard output. `extremes long` adds the
-// longest one.
+// longest one, `extremes joints` are others: those with joints, a card house and an arch.
 
 #include <fmt/core.h>
 
-#include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "bench/extreme_cases.hpp"
 #include "bench/thread_time.hpp"
@@ -33,10 +33,12 @@ void print(const ExtremeCase& extreme) {
 
 int main(int argc, char** argv) {
     using namespace tesserae::bench;
-    const bool with_long = argc > 1 && std::strcmp(argv[1], "long") == 0;
+    const std::string_view part = argc > 1 ? argv[1] : "";
     try {
         fmt::print("case,quantity,unit,value,serial_s\n");
-        for (const ExtremeCase& extreme : extreme_cases(with_long)) print(extreme);
+        for (const ExtremeCase& extreme :
+             part == "joints" ? extreme_joints() : extreme_cases(part == "long"))
+            print(extreme);
     } catch (const std::exception& e) {
         fmt::print(stderr, "extremes: {}\n", e.what());
         return 1;

@@ -21,6 +21,7 @@
 #include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/solver/solver.hpp"
 #include "core/dynamics/step/stage_copy.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "parallel/parallel_world.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film/film.hpp"
@@ -93,6 +94,8 @@ std::string towers(const std::string& settings) {
     return physics(settings) + kFloor +
            lattice("[5, 10, 5, 5]", 1, 5, 0, "shape = \"hyperbox\"\nsize = [0.9, 1, 0.9, 0.9]\n");
 }
+/// A sphere that falls on its own, x metres from the others of its kind.
+std::string alone_at(double x) { return kSphere + fmt::format("position = [{}, 90, 0, 0]\n", x); }
 std::string view(const std::string& camera, const std::string& render = "") {
     return "[camera]\n" + camera + "[render]\nsize = [256, 256]\nsamples = 4\n" + render;
 }
@@ -119,6 +122,10 @@ std::vector<Case> all_cases() {
     const std::string fixed = physics() + lattice("[10, 10, 10, 10]", 2, 0, 0, kSphere + kFixed);
     const std::string pairs = physics() + kFloor + lattice("[10, 1, 10, 10]", 2, 0.5, 0, kSphere);
     const std::string alone = body(kSphere + kAbove), smooth_alone = smooth + kAbove;
+    const std::string pair =
+        body("name = \"a\"\n" + alone_at(0)) + body("name = \"b\"\n" + alone_at(2));
+    const std::string joint =
+        "[[joint]]\ntype = \"point\"\na = \"a\"\nb = \"b\"\nanchor = [1, 90, 0, 0]\n";
     const std::string resting = physics("duration = 0.2\ngravity = [0, 0, 0, 0]\n");
     const std::string drifting = resting + body(kSphere + "velocity = [1e-3, 0, 0, 0]\n");
     const std::string key =
@@ -140,6 +147,7 @@ std::vector<Case> all_cases() {
          heap(kSphere, alone)},
         {"seams", "seams", kStep, 240, heap(kSphere, body(kCube + kFixed + kAbove)),
          heap(kSphere, body(kSphere + kFixed + kAbove))},
+        {"joints", "", kStep, 240, heap(kSphere, pair + joint), heap(kSphere, pair)},
         {"colours_of_towers", "", kColours, 30, towers(""), towers("")},
         {"colours_of_heap", "", kColours, 240, heap(kSphere), heap(kSphere)},
         {"colours_of_pairs", "", kColours, 30, pairs, pairs},
@@ -181,7 +189,8 @@ double time_of(const F& work) {
 
 /// Steps of a world that has settled.
 Work steps_of(scenes::Scene scene, int settle) {
-    auto world = std::make_shared<parallel::ParallelWorld>(std::move(scene.bodies), *scene.physics);
+    auto world = std::make_shared<parallel::ParallelWorld>(
+        make_simulation(std::move(scene.bodies), *scene.physics, std::move(scene.joints)));
     for (int i = 0; i < settle; ++i) world->step(kSeconds);
     return [world] {
         return time_of([&] {

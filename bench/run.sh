@@ -8,6 +8,7 @@
 #   bash bench/run.sh leave-out    what leaving out parts saves, two minutes
 #   bash bench/run.sh rays         view, shadow and bounce rays
 #   bash bench/run.sh extremes     stiff and extreme scenes
+#   bash bench/run.sh joints       ropes and nets beside Bullet's, two minutes
 #   bash bench/run.sh light        error of the traced light against samples, a minute
 #   bash bench/run.sh picture      error of pictures against time, 4 minutes
 #   bash bench/run.sh cycles       a still beside Blender's Cycles (installs it), 5 minutes; not one of all parts
@@ -25,7 +26,7 @@
 #   bash bench/run.sh scaling-16-cores  the same for 10^5 bodies, for a machine of many cores; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-all=(accuracy speed convex leave-out rays extremes light picture bullet peers rest wall scaling)
+all=(accuracy speed convex leave-out rays extremes light picture bullet peers joints rest wall scaling)
 on_demand=(gate ablation cycles large scaling-million scaling-16-cores)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
@@ -101,6 +102,9 @@ extremes() {
     "$folder/bench/extremes" long >"$raw/extremes.csv"
     head_of extremes "$1"
     cat "$raw/head.txt" "$raw/extremes.csv" >"$results/extremes.csv"
+    "$folder/bench/extremes" joints >"$raw/extreme_joints.csv"
+    head_of extremes "$1"
+    cat "$raw/head.txt" "$raw/extreme_joints.csv" >"$results/extreme_joints.csv"
 }
 
 light() {
@@ -197,6 +201,12 @@ peers() {
     done | awk 'NR == 1 || !/^scene,/' >"$raw/peers.csv"
     head_of peers "$1"
     cat "$raw/head.txt" "$raw/peers.csv" >"$results/peers.csv"
+}
+
+joints() {
+    "$folder/bench/joints" >"$raw/joints.csv"
+    head_of joints "$1"
+    cat "$raw/head.txt" "$raw/joints.csv" >"$results/joints.csv"
 }
 
 rest() {
