@@ -35,7 +35,8 @@ constexpr int kMostRepeats = 15;
 
 Row first_run(const Listed& listed, const Knobs& knobs) {
     Row row{listed.make(knobs), knobs, {}, {}, 1};
-    Trial trial(row.experiment.bodies, row.experiment.settings, row.experiment.crowd);
+    Trial trial(row.experiment.bodies, row.experiment.settings, row.experiment.crowd,
+                row.experiment.joints);
     row.errors = row.experiment.errors(trial);
     if (trial.seconds() > kLongRun) {
         row.seconds.push_back(trial.seconds());
@@ -48,7 +49,7 @@ Row first_run(const Listed& listed, const Knobs& knobs) {
 
 void repeat(Row& row) {
     const Experiment& e = row.experiment;
-    Trial trial(e.bodies, e.settings, e.crowd);
+    Trial trial(e.bodies, e.settings, e.crowd, e.joints);
     trial.run();
     row.seconds.push_back(trial.seconds());
 }
@@ -63,7 +64,8 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 /// Either world must end with the same bits, so that an error is one of the engine's, not of the
 /// world that happens to run it.
 void require_same_bits(const Experiment& e) {
-    Trial serial(e.bodies, e.settings, false), crowd(e.bodies, e.settings, true);
+    Trial serial(e.bodies, e.settings, false, e.joints),
+        crowd(e.bodies, e.settings, true, e.joints);
     serial.run();
     crowd.run();
     if (!same_bits(serial.bodies().position, crowd.bodies().position) ||

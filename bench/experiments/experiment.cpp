@@ -18,12 +18,13 @@ PhysicsSettings settings_of(double duration, const Knobs& knobs, const Vec4& gra
     return settings;
 }
 
-Trial::Trial(const Bodies& bodies, const PhysicsSettings& settings, bool crowd)
+Trial::Trial(const Bodies& bodies, const PhysicsSettings& settings, bool crowd,
+             const std::vector<Joint>& joints)
     : settings_(settings), world_(std::in_place_index<0>, Bodies{}, settings) {
     if (crowd)
-        world_.emplace<1>(bodies, settings);
+        world_.emplace<1>(make_simulation(bodies, settings, joints));
     else
-        world_.emplace<0>(bodies, settings);
+        world_.emplace<0>(make_simulation(bodies, settings, joints));
 }
 
 const Bodies& Trial::bodies() const {
@@ -32,6 +33,10 @@ const Bodies& Trial::bodies() const {
 
 const StepMemory& Trial::memory() const {
     return std::visit([](const auto& w) -> const StepMemory& { return w.memory(); }, world_);
+}
+
+std::span<const Wrench> Trial::joint_impulses() const {
+    return std::visit([](const auto& w) { return w.joint_impulses(); }, world_);
 }
 
 void Trial::observe(StageObserver* observer) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,10 +35,13 @@ PhysicsSettings settings_of(double duration, const Knobs& knobs, const Vec4& gra
 /// same bits. A crowd belongs inside Threads::run().
 class Trial {
   public:
-    Trial(const Bodies& bodies, const PhysicsSettings& settings, bool crowd = false);
+    Trial(const Bodies& bodies, const PhysicsSettings& settings, bool crowd = false,
+          const std::vector<Joint>& joints = {});
 
     const Bodies& bodies() const;
     const StepMemory& memory() const;
+    /// As World::joint_impulses().
+    std::span<const Wrench> joint_impulses() const;
 
     /// Makes all steps of the duration.
     void run();
@@ -72,6 +76,7 @@ struct Experiment {
     /// Runs a new trial of these bodies and settings, and compares.
     std::function<std::vector<Error>(Trial&)> errors;
     bool crowd = false;
+    std::vector<Joint> joints = {};
 };
 
 /// The half-space under y = 0.

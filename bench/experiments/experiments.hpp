@@ -30,6 +30,11 @@ Experiment critical_angle(const Knobs& knobs);
 Experiment friction_isotropy(const Knobs& knobs);
 Experiment friction_isotropy_free(const Knobs& knobs);
 
+// joints.cpp
+Experiment pendulum(const Knobs& knobs);
+Experiment oscillator(const Knobs& knobs);
+Experiment hanging_chain(const Knobs& knobs);
+
 // heaps.cpp
 Experiment stacked_spheres(const Knobs& knobs);
 Experiment elastic_stack(const Knobs& knobs);
