@@ -70,8 +70,8 @@ std::uint64_t cube_side(std::uint64_t count) {
     return std::max<std::uint64_t>(n, 1);
 }
 
-/// Bodies that joints connect: scene files have a limited number of keys.
-constexpr std::uint64_t kMostJoined = 8000;
+/// Bodies that joints connect: scene files have a limited number of joints.
+constexpr std::uint64_t kMostJoined = 80000;
 
 constexpr const char* kBallText = "shape = \"hypersphere\"\nradius = 0.5\n";
 constexpr const char* kPlainBox = "shape = \"hyperbox\"\nsize = [1, 1, 1, 1]\n";

@@ -20,11 +20,15 @@ constexpr std::size_t kMaxBodyTables = 1'000'000;
 /// Dots of a key, nested arrays and inline tables. Real scenes have 3; the parser's stack holds
 /// more than a thousand.
 constexpr int kMaxDepth = 32;
-/// Values (counted by their = and , signs) outside [[body]] tables and in one body. The parser
-/// takes some 150 bytes for each, and its time grows with the square of the dotted keys among them.
+/// Values (counted by their = and , signs) outside [[body]] and [[joint]] tables, and in one body.
+/// The parser takes some 150 bytes for each, and its time grows with the square of the dotted keys
+/// among them.
 constexpr std::size_t kMaxRestValues = 400'000;
 constexpr std::size_t kMaxRestKeys = 100'000;
 constexpr std::size_t kMaxBodyValues = 4'000;
+/// Joints are many and small. They are parsed with the rest, together.
+constexpr std::size_t kMaxJointTables = 200'000;
+constexpr std::size_t kMaxJointValues = 400, kMaxValuesOfJoints = 4'000'000;
 /// Bodies parsed at a time: many enough to make a call's own cost small.
 constexpr std::size_t kBodiesInPiece = 200;
 
@@ -138,12 +142,21 @@ class Cutter {
             fail(at_, fmt::format("a body with more than {} values", kMaxBodyValues));
     }
 
+    void count_joint_value() {
+        if (++joint_values_ > kMaxJointValues)
+            fail(at_, fmt::format("a joint with more than {} values", kMaxJointValues));
+        if (++values_of_joints_ > kMaxValuesOfJoints)
+            fail(at_, fmt::format("joints with more than {} values", kMaxValuesOfJoints));
+    }
+
     void count_value(char sign) {
         if (in_bodies_) return count_body_value();
+        if (in_joint_) return count_joint_value();
         if (sign == '=') ++rest_keys_;
         if (++rest_values_ > kMaxRestValues || rest_keys_ > kMaxRestKeys)
-            fail(at_, fmt::format("more than {} keys or {} values outside [[body]] tables",
-                                  kMaxRestKeys, kMaxRestValues));
+            fail(at_,
+                 fmt::format("more than {} keys or {} values outside [[body]] and [[joint]] tables",
+                             kMaxRestKeys, kMaxRestValues));
     }
 
     /// At a line that starts with '[' outside any value: decides to which piece the table belongs.
@@ -155,6 +168,7 @@ class Cutter {
             if (c != ' ' && c != '\t' && c != '\r' && c != '"' && c != '\'') name += c;
         }
         if (name == "[[body]]") {
+            in_joint_ = false;
             if (++result_.body_count > kMaxBodyTables)
                 fail(at_,
                      fmt::format("more than {} [[body]] tables; a [[lattice]] makes many alike",
@@ -172,9 +186,19 @@ class Cutter {
         if (in_bodies_ && of_a_body) return count_body_value();
         if (in_bodies_) end_piece(line_start_);
         in_bodies_ = false;
+        if (name == "[[joint]]") {
+            if (++joints_ > kMaxJointTables)
+                fail(at_, fmt::format("more than {} [[joint]] tables", kMaxJointTables));
+            in_joint_ = true;
+            joint_values_ = 0;
+            return;
+        }
+        in_joint_ = in_joint_ && (name.starts_with("[joint.") || name.starts_with("[[joint."));
+        if (in_joint_) return count_joint_value();
         if (++rest_keys_ > kMaxRestKeys)
             fail(at_,
-                 fmt::format("more than {} tables and keys outside [[body]] tables", kMaxRestKeys));
+                 fmt::format("more than {} tables and keys outside [[body]] and [[joint]] tables",
+                             kMaxRestKeys));
     }
 
     void end_piece(std::size_t end) {
@@ -193,9 +217,10 @@ class Cutter {
     const std::string& place_;
     SceneText result_;
     std::size_t at_ = 0, line_ = 0, line_start_ = 0;  ///< byte; lines from 0
-    bool in_bodies_ = false;
+    bool in_bodies_ = false, in_joint_ = false;
     std::size_t piece_start_ = 0, piece_line_ = 0, bodies_in_piece_ = 0;
     std::size_t body_values_ = 0, rest_values_ = 0, rest_keys_ = 0;
+    std::size_t joints_ = 0, joint_values_ = 0, values_of_joints_ = 0;
 };
 
 }  // namespace

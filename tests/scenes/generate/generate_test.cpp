@@ -59,8 +59,10 @@ TEST(Generate, WhatIsJoinedStaysJoined) {
 }
 
 TEST(Generate, RefusesMoreJointsThanAFileCanHave) {
-    EXPECT_THROW(generated_scene("grid", 8001), InputError);
-    EXPECT_EQ(load_text(generated_scene("grid", 8000)).joints.size(), 15911u);
+    EXPECT_THROW(generated_scene("grid", 80001), InputError);
+    const Scene scene = load_text(generated_scene("grid", 10000));
+    EXPECT_EQ(scene.joints.size(), 19802u);
+    EXPECT_EQ(load_text(scene.effective).effective, scene.effective);
 }
 
 TEST(Generate, SaysHowItWasMade) {

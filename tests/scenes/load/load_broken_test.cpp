@@ -451,6 +451,16 @@ TEST(BrokenScene, Bombs) {
     EXPECT_NE(error_of("[[body]]\n" + pairs).find("a body with more than"), std::string::npos);
     EXPECT_NE(error_of(repeated("[[body]]\n", 1'000'001)).find("more than 1000000 [[body]] tables"),
               std::string::npos);
+    EXPECT_NE(error_of("[[joint]]\n" + pairs).find("a joint with more than 400 values"),
+              std::string::npos);
+    EXPECT_NE(error_of("[[joint]]\n[joint.a]\nx=[" + repeated("0,", 500)).find("a joint with"),
+              std::string::npos);
+    EXPECT_NE(error_of("[[joint]]\n[camera]\n" + pairs).find("100000 keys"), std::string::npos);
+    EXPECT_NE(error_of(repeated("[[joint]]\n", 200'001)).find("more than 200000 [[joint]] tables"),
+              std::string::npos);
+    const std::string joint = "[[joint]]\nx = [" + repeated("0,", 390) + "]\n";
+    EXPECT_NE(error_of(repeated(joint, 11'000)).find("joints with more than 4000000 values"),
+              std::string::npos);
     for (const std::string& set : {dots + "=1", "physics.seed=" + repeated("[", 100'000)})
         EXPECT_TRUE(error_of("", {set}).starts_with("--set ")) << set.substr(0, 40);
 }
