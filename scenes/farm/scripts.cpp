@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/dynamics/motion_version.hpp"
-#include "render/picture_version.hpp"
 #include "scenes/process/shell_word.hpp"
+#include "scenes/process/version.hpp"
 
 namespace tesserae::scenes {
 namespace {
@@ -27,13 +26,14 @@ constexpr const char* kFilm = R"sh(# Sourced by the scripts beside it, in the fi
 # The program, where the nodes see it.
 program={program}
 
-# Its version: frames of different ones are not mixed.
+# Its version, the first line of --version: frames of different ones are not mixed.
 version={version}
 
 found=$("$program" --version) || {{
     echo "tesserae: $program does not run on $(hostname)" >&2
     exit 1
 }}
+found=${{found%%$'\n'*}}
 [ "$found" = "$version" ] || {{
     echo "tesserae: $program is \"$found\", the film was submitted for \"$version\": submit it again" >&2
     exit 1
@@ -152,11 +152,6 @@ std::string script(const char* what, const std::string& sbatch, const char* work
 
 }  // namespace
 
-std::string program_version() {
-    return fmt::format("tesserae {} (motion version {}, picture version {})", TESSERAE_VERSION,
-                       kMotionVersion, render::kPictureVersion);
-}
-
 std::vector<FarmScript> farm_scripts(const FarmFilm& film) {
     const FarmEstimate& e = film.estimate;
     const std::string throttle =
@@ -165,7 +160,7 @@ std::vector<FarmScript> farm_scripts(const FarmFilm& film) {
     const int simulate_cores = film.moves ? e.cores : 1;
     return {
         {"film.sh", fmt::format(kFilm, fmt::arg("program", shell_word(film.program.string())),
-                                fmt::arg("version", shell_word(program_version())),
+                                fmt::arg("version", shell_word(version_line())),
                                 fmt::arg("trajectory", film.moves ? "trajectory.h5" : ""))},
         {"simulate.sh",
          script("Moves the bodies: DIR/trajectory.h5.",

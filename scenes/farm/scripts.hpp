@@ -20,9 +20,6 @@ struct FarmFilm {
     FarmRequest request;
 };
 
-/// `tesserae --version` of this program: tasks of another one refuse to work.
-std::string program_version();
-
 /// A file of DIR/submit.
 struct FarmScript {
     std::string name, text;

@@ -17,6 +17,7 @@
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
+#include "scenes/process/version.hpp"
 #include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
@@ -195,7 +196,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     render::FrameInfo info;
     info.scene_name = scene.name;
     info.motion_version = poses.motion_version();
-    info.program_version = TESSERAE_VERSION;
+    info.program_version = program_version();
     info.id_names = id_names(scene);
     std::optional<render::Mattes> mattes;
     if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);

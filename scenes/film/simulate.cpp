@@ -15,6 +15,7 @@
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
+#include "scenes/process/version.hpp"
 #include "scenes/timeline.hpp"
 #include "scenes/trajectory/joint_datasets.hpp"
 #include "scenes/trajectory/trajectory.hpp"
@@ -41,7 +42,7 @@ TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
     header.effective = scene.effective;
     header.hash = scene.hash;
     header.motion_hash = scene.motion_hash;
-    header.program_version = TESSERAE_VERSION;
+    header.program_version = program_version();
     header.bodies = scene.bodies.size();
     header.steps_per_second = scene.physics ? scene.physics->steps_per_second : 1;
     header.store_every = options.store_every;

@@ -13,8 +13,8 @@ namespace tesserae::scenes {
 
 /// What the user typed, checked as far as it can be without the scene.
 struct CommandLine {
-    std::string command;  ///< "run", "simulate", ...; empty: only help or version was asked for
-    std::filesystem::path file;                ///< the scene, info's file, or film's folder
+    std::string command;         ///< "run", ..., or "--version"; empty: only help was asked for
+    std::filesystem::path file;  ///< the scene, info's file, or film's folder
     std::vector<std::filesystem::path> files;  ///< hash's, or diff's two
     std::filesystem::path output;
     std::filesystem::path trajectory;
@@ -23,6 +23,7 @@ struct CommandLine {
     std::uint64_t store_every = 0;  ///< 0: the steps that the frames need
     std::string generator;
     std::string topic;                        ///< of the reference; empty: all of it
+    std::string shell;                        ///< of the reference's completion
     std::uint64_t bodies = 0;                 ///< to generate
     std::string format;                       ///< export's: "ply" or "vtk"
     std::optional<double> tolerance, extent;  ///< export's [m]
@@ -36,11 +37,8 @@ struct CommandLine {
     std::vector<std::string> sets;
 };
 
-/// Parses and checks the command line; prints help and version itself.
+/// Parses and checks the command line; prints help itself.
 /// @throws InputError   with the reason and where to find help
 CommandLine parse_command_line(int argc, const char* const* argv);
-
-/// What --help says of every command, as Markdown.
-std::string commands_page();
 
 }  // namespace tesserae::scenes

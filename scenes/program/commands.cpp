@@ -18,9 +18,12 @@
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
 #include "scenes/program/compare_commands.hpp"
+#include "scenes/program/completion.hpp"
 #include "scenes/program/farm_commands.hpp"
 #include "scenes/program/film_commands.hpp"
+#include "scenes/program/help.hpp"
 #include "scenes/program/info.hpp"
+#include "scenes/program/man_page.hpp"
 #include "scenes/program/tool_commands.hpp"
 #include "scenes/program/view_command.hpp"
 #include "scenes/program/work.hpp"
@@ -156,6 +159,15 @@ void info_command(const CommandLine& line) {
     }
 }
 
+/// A page of the manual, or what is made of the same lists for a shell and for man.
+std::string reference_text(const CommandLine& line) {
+    if (line.topic == "commands") return commands_page();
+    if (line.topic == "man") return man_page(program_help());
+    if (line.topic != "completion") return reference(line.topic);
+    if (line.shell == "zsh") return zsh_completion(program_help());
+    return line.shell == "fish" ? fish_completion(program_help()) : bash_completion(program_help());
+}
+
 /// Says what is kept, after a signal.
 int report_stop() {
     const int signal = stop_signal();
@@ -188,8 +200,7 @@ int execute(const CommandLine& line) {
     if (line.command == "submit") submit_command(line);
     if (line.command == "join") status = join_command(line);
     if (line.command == "status") status = status_command(line);
-    if (line.command == "reference")
-        put(line.topic == "commands" ? commands_page() : reference(line.topic));
+    if (line.command == "reference") put(reference_text(line));
     if (line.command == "generate") put(generated_scene(line.generator, line.bodies));
     return status;
 }
@@ -212,13 +223,18 @@ void tell_lines(std::string_view text) {
 
 }  // namespace
 
-int program(int argc, const char* const* argv) {
+int program(int argc, const char* const* argv, const Commit& commit) {
     open_standard_streams();
     handle_signals();
     CommandLine line;
     try {
         line = parse_command_line(argc, argv);
-        return execute(line);
+        if (line.command != "--version") return execute(line);
+        if (line.json)
+            put_json(version_json(commit));
+        else
+            put(version_text(commit));
+        return 0;
     } catch (const fs::filesystem_error& error) {
         return report_path(error, line);
     } catch (const Stopped&) {

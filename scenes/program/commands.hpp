@@ -1,5 +1,6 @@
 #pragma once
 
+#include "scenes/process/version.hpp"
 #include "scenes/program/command_line.hpp"
 
 namespace tesserae::scenes {
@@ -12,6 +13,7 @@ int execute(const CommandLine& line);
 /// The program: parses, executes, prints errors. Returns the exit status: 0 done, 1 failed while
 /// running (diff: its files differ), 2 command line or input file wrong, 130 after SIGINT, 143
 /// after SIGTERM.
-int program(int argc, const char* const* argv);
+/// @param commit   that --version names
+int program(int argc, const char* const* argv, const Commit& commit);
 
 }  // namespace tesserae::scenes

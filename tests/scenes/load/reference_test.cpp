@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "scenes/program/command_line.hpp"
+#include "scenes/program/help.hpp"
 #include "tests/content.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 

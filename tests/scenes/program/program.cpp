@@ -56,6 +56,10 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
     return outcome;
 }
 
+bool is_installed(const std::string& program) {
+    return std::system(fmt::format("command -v {} >/dev/null", program).c_str()) == 0;
+}
+
 std::string Folder::write(const std::string& name, const std::string& text) const {
     std::ofstream(path() / name, std::ios::binary) << text;
     return file(name);

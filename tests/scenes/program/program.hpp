@@ -27,6 +27,9 @@ class WithFilms {
 /// Runs the program to its end; sends `signal` after `milliseconds` if that is not 0.
 Outcome tesserae(const std::vector<std::string>& arguments, int signal = 0, int milliseconds = 0);
 
+/// Whether the shell finds another program.
+bool is_installed(const std::string& program);
+
 class Folder : public tesserae::testing::TemporaryFolder {
   public:
     using TemporaryFolder::TemporaryFolder;
