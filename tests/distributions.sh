@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Shows on bare systems of Debian 12 and 13 that both README commands, clang++ and the benchmarks
-# work, how long each takes, and that the same film has the same hash on both. By hand, before a
-# release: it needs root, debootstrap, some 10 GB and half an hour a system on two cores.
+# work, that the package for Debian does in a system that has nothing else, how long each takes, and
+# that the same film has the same hash by all of them. By hand, before a release: it needs root,
+# debootstrap, some 10 GB and half an hour a system on two cores.
 #   bash tests/distributions.sh                  bookworm and trixie
 #   bash tests/distributions.sh trixie           only this
 #   bash tests/distributions.sh --quick [...]    without clang++ and the benchmarks
@@ -21,59 +22,89 @@ for argument in "$@"; do
 done
 [ ${#suites[@]} != 0 ] || suites=(bookworm trixie)
 
-# bare_system SUITE: what debootstrap's smallest variant holds, and this tree in /tesserae.
-bare_system() {
-    local system=$folder/$1 mirror
+# base SUITE: what debootstrap's smallest variant holds, made once.
+base() {
+    local system=$folder/$1.base mirror
     mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
     mkdir -p "$folder"
-    if [ ! -e "$system/made" ]; then
-        rm -rf "$system"
-        debootstrap --variant=minbase "$1" "$system" "$mirror" >"$folder/$1.debootstrap.log" 2>&1 ||
-            { tail "$folder/$1.debootstrap.log" >&2; return 1; }
-        touch "$system/made"
-    fi
+    [ ! -e "$system/made" ] || return 0
+    rm -rf "$system"
+    debootstrap --variant=minbase "$1" "$system" "$mirror" >"$folder/$1.debootstrap.log" 2>&1 ||
+        { tail "$folder/$1.debootstrap.log" >&2; return 1; }
     # A mirror may be an old copy, whose dates apt would refuse.
     echo 'Acquire::Check-Valid-Until "false";' >"$system/etc/apt/apt.conf.d/99old-copies"
+    touch "$system/made"
+}
+
+# bare_system SUITE SYSTEM: a copy of the suite's base with an empty /tesserae, where there is none yet.
+bare_system() {
+    local system=$folder/$2
+    base "$1"
+    if [ ! -e "$system/made" ]; then
+        rm -rf "$system" "$system.partial"
+        cp -a "$folder/$1.base" "$system.partial"
+        mv "$system.partial" "$system"
+    fi
     cp /etc/resolv.conf "$system/etc/resolv.conf"
-    rm -rf "$system/tesserae" "$folder/$1".*.log "$folder/$1".*.hash
+    rm -rf "$system/tesserae" "$folder/$2".*.log "$folder/$2".*.hash
     mkdir "$system/tesserae"
-    git -C "$root" ls-files -z | tar -C "$root" --null -T - -c | tar -C "$system/tesserae" -x
     mount -t proc proc "$system/proc"
     mount --rbind /dev "$system/dev"
 }
 
-# step SUITE NAME COMMAND: runs it there, prints how long it took and how it ended.
-failed=()
-step() {
-    local suite=$1 name=$2 begin=$SECONDS outcome=done
-    chroot "$folder/$suite" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
-        bash -c "cd /tesserae && $3" >"$folder/$suite.$name.log" 2>&1 </dev/null ||
-        { outcome="failed: see $folder/$suite.$name.log"; failed+=("$suite $name"); }
-    printf '%-9s %-14s %5d s  %s\n' "$suite" "$name" $((SECONDS - begin)) "$outcome"
+# with_tree SUITE: the system that all is built in, and this tree in /tesserae.
+with_tree() {
+    bare_system "$1" "$1"
+    git -C "$root" ls-files -z | tar -C "$root" --null -T - -c | tar -C "$folder/$1/tesserae" -x
 }
 
-# hash_of SUITE BUILD: of a film made there by that build, into SUITE.BUILD.hash.
+# step SYSTEM NAME COMMAND: runs it in /tesserae there, prints how long it took and how it ended.
+failed=()
+step() {
+    local system=$1 name=$2 begin=$SECONDS outcome=done
+    chroot "$folder/$system" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+        bash -c "cd /tesserae && $3" >"$folder/$system.$name.log" 2>&1 </dev/null ||
+        { outcome="failed: see $folder/$system.$name.log"; failed+=("$system $name"); }
+    printf '%-13s %-15s %5d s  %s\n' "$system" "$name" $((SECONDS - begin)) "$outcome"
+}
+
+# hash_of SYSTEM NAME PROGRAM SCENE: of a film made there by that program, into SYSTEM.NAME.hash.
 hash_of() {
-    step "$1" "film-$2" "rm -rf out/film && build/$2/tesserae run scenes/gallery/first.toml -o out/film \
-        --frames 0-23x8 --quiet && build/$2/tesserae hash out/film out/film/trajectory.h5"
+    step "$1" "film-$2" "rm -rf out/film && $3 run $4 -o out/film --frames 0-23x8 --quiet &&
+        $3 hash out/film out/film/trajectory.h5"
     grep -E '^[0-9a-f]{32}  ' "$folder/$1.film-$2.log" >"$folder/$1.$2.hash" ||
         failed+=("$1 $2: no hash")
 }
 
+# package SUITE: packs the program, and installs it in a new system in which nothing was built.
+package() {
+    local user=$1.user
+    step "$1" package 'rm -rf build/packages && cpack --config build/release/CPackConfig.cmake -B build/packages &&
+        dpkg-deb --info build/packages/*.deb && dpkg-deb --contents build/packages/*.deb'
+    rm -rf --one-file-system "${folder:?}/$user"
+    bare_system "$1" "$user"
+    cp "$folder/$1"/tesserae/build/packages/*.deb "$root/scenes/gallery/first.toml" "$folder/$user/tesserae" ||
+        { failed+=("$1: no package"); return; }
+    step "$user" install 'apt-get update -qq && apt-get install -y -qq --no-install-recommends ./*.deb \
+        fonts-dejavu-core && tesserae --version'
+    hash_of "$user" package tesserae first.toml
+}
+
 # Ninja and ccache are new there: everything is compiled.
 for suite in "${suites[@]}"; do
-    bare_system "$suite"
-    step "$suite" install '. scenes/setup.sh && install_packages "${packages[@]}"'
+    with_tree "$suite"
+    step "$suite" install '. scenes/setup.sh && install_packages "${packages[@]}" dpkg-dev'
     step "$suite" build-program '. scenes/setup.sh && build "$root/build/release" tesserae -DCMAKE_BUILD_TYPE=Release'
     step "$suite" scenes-run 'bash scenes/run.sh'
+    package "$suite"
     step "$suite" build-tests '. scenes/setup.sh && build "$root/build/release" all'
     step "$suite" tests-run 'bash tests/run.sh'
-    hash_of "$suite" release
+    hash_of "$suite" release build/release/tesserae scenes/gallery/first.toml
     [ "$extent" != quick ] || continue
     step "$suite" clang '. scenes/setup.sh && install_packages clang && build "$root/build/clang" all \
         -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ &&
         ctest --test-dir build/clang -L fast -j "$(nproc)" --output-on-failure'
-    hash_of "$suite" clang
+    hash_of "$suite" clang build/clang/tesserae scenes/gallery/first.toml
     step "$suite" benchmarks 'bash bench/run.sh bullet && build/bench/bench/rays 100 &&
         build/bench/bench/peers_double box_wall 100 && build/bench/bench/contacts_float --benchmark_filter=sphere'
     [ "$extent" != all ] || step "$suite" tests-all 'bash tests/run.sh --all'
