@@ -18,7 +18,8 @@ const fs::path kSource = TESSERAE_SOURCE_DIR;
 
 /// The READMEs and whatever else is written for readers.
 std::vector<fs::path> pages() {
-    std::vector<fs::path> found = {kSource / "README.md"};
+    std::vector<fs::path> found = {kSource / "README.md", kSource / "CONTRIBUTING.md",
+                                   kSource / "CHANGELOG.md"};
     for (const char* room : {"core", "parallel", "render", "scenes", "bench", "tests"})
         for (const auto& entry : fs::recursive_directory_iterator(kSource / room))
             if (entry.path().extension() == ".md") found.push_back(entry.path());
