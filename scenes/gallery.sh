@@ -33,5 +33,5 @@ sheet() {
 
 sheet contact first:6,18,30,44 shapes:14,26,38,66 drum:10,30,50,70 tower:4,21,27,90 dominoes:4,14,26,90 \
     polychora:4,20,34,66 heap:4,18,24,90 race:4,24,44,66 turn:4,30,60,90
-sheet joints car:30,60,100,240 pendulum:4,72,135,216 chain:30,102,112,128 wrecking:12,22,60,84 \
+sheet joints car:30,60,100,240 pendulum:4,72,135,216 chain:30,102,112,128 wrecking:12,22,44,72 \
     tesseract:10,30,48,163
