@@ -172,6 +172,17 @@ class PosedPart {
         aim(now, bends);
     }
 
+    /// It ends where the coordinate's limits are, so that a motor without a bound does not drive
+    /// through them.
+    double speed_within_limits(const JointDrive& drive) const {
+        double speed = drive.speed;
+        const double value = coordinates_.values[drive.coordinate];
+        for (const auto& [coordinate, low, high] : joint_.limits)
+            if (coordinate == drive.coordinate)
+                speed = std::clamp(speed, std::min(0.0, (low - value) / step_.h),
+                                   std::max(0.0, (high - value) / step_.h));
+        return speed;
+    }
     /// From the force at the mean of the sub-step's ends, x + h/4 (v1 - v0) and (v0 + v1) / 2 for
     /// the coordinate x now and its velocities before and after.
     void drive(const JointDrive& drive) {
@@ -181,7 +192,7 @@ class PosedPart {
         const double h = step_.h, spring = 0.25 * h * h * drive.stiffness;
         const double damper = 0.5 * h * drive.damping, gives = spring + damper;
         if (drive.holds_speed) {
-            out_.bias = RowVector::Constant(1, drive.speed);
+            out_.bias = RowVector::Constant(1, speed_within_limits(drive));
         } else if (gives > 0) {
             out_.compliance = 1 / gives;
             const double off = coordinates_.values[drive.coordinate] - drive.target;

@@ -263,6 +263,24 @@ TEST(Motor, TurnsAWheelUpToItsSpeed) {
     }
 }
 
+/// Whatever its force: pressed on by gravity or not, and at both ends.
+TEST(Motor, StopsAtALimit) {
+    for (const double most : {1e4, kNoLimit})
+        for (const double speed : {0.8, -0.8})
+            for (const ColouredFrom& way : kAllWays) {
+                Bodies bodies;
+                const Vec4 start{1, 2, 3, 4};
+                add(bodies, box_type(Vec4::Constant(0.4), 50), start);
+                Joint joint = frame_joint(bodies, kWorld, 0, start, all_but({1}));
+                joint.limits = {{1, -0.3, 0.5}};
+                joint.drives = {{1, 0, speed, 0, 0, true, most}};
+                World world(make_simulation(bodies, PhysicsSettings{}, {joint}), way);
+                run(world, 480);
+                EXPECT_NEAR(world.bodies().position[0][1], speed > 0 ? 2.5 : 1.7, 1e-4);
+                EXPECT_LT(fastest_of(world), 1e-4);
+            }
+}
+
 /// Two arms in a row, the first driven to an angle: the motor holds both up by its moment.
 TEST(Motor, HoldsAnAngleAgainstGravity) {
     Bodies bodies;
