@@ -95,7 +95,7 @@ TEST(SortAndSweep, FindsThePairsThatTestingAllFinds) {
             BodyType type = sphere_type(std::pow(10.0, 2 * unit(engine) - 2));  // 1 cm to 1 m
             type.fixed_position = engine() % 6 == 0;
             type.fixed_rotation = engine() % 2 == 0;
-            type.group = engine() % 5;
+            type.group = static_cast<std::uint8_t>(engine() % 5);
             if (engine() % 3 == 0) type.collides_with = engine();
             Vec4 x;
             for (int k = 0; k < 4; ++k) x[k] = size * unit(engine) * (k == round % 4 ? 1 : 0.3);
