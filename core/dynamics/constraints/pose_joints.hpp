@@ -12,8 +12,8 @@ void list_joints(const Simulation& simulation, StepData& step);
 ///
 /// What is held aims at no error in the middle of the next sub-step, if bodies go straight on and
 /// turn freely until then. Together with the sub-step this is SHAKE (Ryckaert, Ciccotti, Berendsen,
-/// J. Comput. Phys. 23, 1977), of second order, which neither gains nor loses energy on the whole. A
-/// JointBlock aims again by how the bodies move after its load, see missed_by(); sweeps do not.
+/// J. Comput. Phys. 23, 1977), of second order, which neither gains nor loses energy on the whole.
+/// A JointBlock aims again by how the bodies move after its load, see missed_by(); sweeps do not.
 /// Joints that make a loop aim without what turning adds to the way, and are of first order. A
 /// spring's force is that at the mean of the sub-step's ends (implicit midpoint rule), which keeps
 /// its energy at any stiffness.
