@@ -45,7 +45,6 @@ class JointGain {
         BodyMotion before, by_gravity, given;
     };
 
-    std::size_t place_of(BodyId body) const;
     BodyMotion mean_of(const StepData& step, BodyId id) const;
     double gain_of(const Simulation& simulation, const StepData& step,
                    std::span<const std::uint32_t> constraints, BodyId group,
