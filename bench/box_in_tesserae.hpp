@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/box_motions.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 namespace tesserae::bench {
 
@@ -35,7 +35,7 @@ inline BoxPath path_in_tesserae(const BoxMotion& motion, int steps_per_second) {
     settings.gravity = {0, -kBoxGravity, 0, 0};
     settings.iterations = kBoxIterations;
     settings.tolerance = 0;  // all of them, as Bullet does
-    World world(bodies_of(motion), settings);
+    Stepper world(bodies_of(motion), settings);
     BoxPath path;
     for (int sample = 0; sample < kBoxSamples; ++sample) {
         for (int i = 0; i < steps_of_sample(steps_per_second); ++i)

@@ -5,7 +5,7 @@
 
 #include "bench/resting_scenes.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 
 namespace tesserae::bench {
@@ -48,7 +48,7 @@ ExtremeCase staying(std::string name, Bodies bodies, double size, double seconds
                     double steps_per_second = 240, double gravity = 10) {
     return {std::move(name), [=](PhysicsSettings settings) {
                 settings.gravity = {0, -gravity, 0, 0};
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 return rows_of(watch(world, seconds, steps_per_second), size);
             }};
 }
@@ -59,7 +59,7 @@ ExtremeCase spinning(std::string name, const Vec4& size, const Bivector& omega, 
                 settings.gravity.setZero();
                 Bodies bodies;
                 add(bodies, box_type(size, 1), Vec4::Zero(), Vec4::Zero(), omega);
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 const double start = kinetic_energy(bodies);
                 double worst = 0;
                 for (long i = 0; i < std::lround(240 * seconds); ++i) {
@@ -84,7 +84,7 @@ ExtremeCase bouncing() {
                     for (int k = 0; k < 4; ++k) x[k] = 1.2 * (cell[k] - 1), v[k] = along(engine);
                     add(bodies, sphere_type(0.3, 1, 0, 1), x, v);
                 }
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 const double start = kinetic_energy(bodies);
                 double worst = 0;
                 for (int i = 0; i < 100000; ++i) {
@@ -100,7 +100,7 @@ ExtremeCase bouncing() {
 ExtremeCase impact(std::string name, const Bodies& bodies, const Vec4& towards, bool falls) {
     return {std::move(name), [=](PhysicsSettings settings) -> Measurements {
                 if (!falls) settings.gravity.setZero();
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 const auto energy = [&] {
                     const Bodies& now = world.bodies();
                     double sum = kinetic_energy(now);
@@ -188,7 +188,7 @@ std::vector<ExtremeCase> impacts() {
 /// The last body's path for a second over boxes, and that over planes in their place.
 ExtremeCase beside_planes(std::string name, Bodies boxes, Bodies planes) {
     return {std::move(name), [=](const PhysicsSettings& settings) -> Measurements {
-                World on_boxes(boxes, settings), on_planes(planes, settings);
+                Stepper on_boxes(boxes, settings), on_planes(planes, settings);
                 double path = 0, hop = 0;
                 for (int i = 0; i < 240; ++i) {
                     on_boxes.step(1.0 / 240), on_planes.step(1.0 / 240);
@@ -252,7 +252,7 @@ ExtremeCase rods() {
                     add(bodies, box_type(size, 1), {0.05 * (i % 3), 0.8 + 0.7 * i, 0, 0});
                     bodies.rotor.back() = exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]});
                 }
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 const auto energy = [&] {
                     return kinetic_energy(world.bodies()) +
                            potential_energy(world.bodies(), settings.gravity);
@@ -293,7 +293,7 @@ ExtremeCase throws(std::string name, BodyType body, double thickness, double res
                 add(bodies, body, {-0.5 - 0.01 * speed * (1 + part(engine)), 0, 0, 0},
                     speed * (Vec4::UnitX() + random_vector(engine, 0.4)), plane(20));
                 bodies.rotor.back() = exp(plane(2));
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 const double start = kinetic_energy(bodies);
                 for (int k = 0; k < 12; ++k) {
                     world.step(1.0 / 240);
@@ -315,7 +315,7 @@ ExtremeCase struck_before_wall() {
                 add(bodies, wall, Vec4::Zero());
                 add(bodies, sphere_type(0.05, 1, 0, 1), {-0.09, 0, 0, 0});
                 add(bodies, sphere_type(0.05, 10, 0, 1), {-0.3, 0, 0, 0}, {0.08 * 240, 0, 0, 0});
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 int lost = 0;
                 for (int k = 0; k < 24; ++k) world.step(1.0 / 240);
                 for (const BodyId id : {1, 2}) lost += world.bodies().position[id][0] > 0;
@@ -346,7 +346,7 @@ ExtremeCase resting_spheres() {
                 parallel::Threads threads(parallel::granted_cores());
                 Measurements rows;
                 threads.run([&] {
-                    parallel::ParallelWorld world(bodies, settings);
+                    parallel::ParallelStepper world(bodies, settings);
                     rows = rows_of(watch(world, 60, 60), 1);
                 });
                 return rows;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 // Stiff and extreme scenes: what a user may ask for and an engine may fail at.
 namespace tesserae::bench {

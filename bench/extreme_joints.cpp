@@ -41,7 +41,7 @@ struct Watched {
     double fall = 0;   ///< largest loss of potential energy [J]
 };
 
-double largest_error(const World& world) {
+double largest_error(const Stepper& world) {
     const Bodies& bodies = world.bodies();
     double largest = 0;
     for (const Joint& joint : world.simulation().joints.all) {
@@ -53,7 +53,7 @@ double largest_error(const World& world) {
     return largest;
 }
 
-Watched watch_joints(World& world, double seconds) {
+Watched watch_joints(Stepper& world, double seconds) {
     const auto potential = [&] {
         return potential_energy(world.bodies(), world.simulation().settings.gravity);
     };
@@ -73,7 +73,7 @@ Watched watch_joints(World& world, double seconds) {
 /// What happens to joints that fall, swing and whip.
 ExtremeCase swinging(std::string name, const Jointed& scene, double seconds) {
     return {std::move(name), [=](const PhysicsSettings& settings) -> Measurements {
-                World world(make_simulation(scene.bodies, settings, scene.joints));
+                Stepper world(make_simulation(scene.bodies, settings, scene.joints));
                 const Watched watched = watch_joints(world, seconds);
                 Measurements rows = {{"largest error of a joint", "mm", 1e3 * watched.error}};
                 if (watched.fall < kLeastFall) return rows;
@@ -177,7 +177,7 @@ Bodies arch(int wedges) {
 
 ExtremeCase standing(std::string name, const Bodies& bodies, double size, double seconds) {
     return {std::move(name), [=](const PhysicsSettings& settings) -> Measurements {
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 double overlap = 0, moved = 0, fastest = 0;
                 for (long i = 0; i < std::lround(240 * seconds); ++i) {
                     overlap = std::max(overlap, world.step(1.0 / 240).penetration);
@@ -235,7 +235,7 @@ ExtremeCase wrecking_ball(double mass) {
                                end - scene.bodies.position[ball]};
                 scene.joints.push_back(joint);
 
-                World world(make_simulation(scene.bodies, settings, scene.joints));
+                Stepper world(make_simulation(scene.bodies, settings, scene.joints));
                 const Watched watched = watch_joints(world, 4);
                 int left = 0;
                 for (std::size_t id = 1; id < boxes; ++id)

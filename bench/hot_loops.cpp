@@ -17,7 +17,7 @@
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/solver/solver.hpp"
 #include "core/dynamics/step/stage_copy.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/sort_and_sweep.hpp"
 #include "parallel/threads.hpp"
 #include "render/frame.hpp"
@@ -159,7 +159,7 @@ const Heap& heap_of(int count) {
     if (found != heaps.end()) return found->second;
     parallel::Threads threads(parallel::granted_cores());
     const int across = count < 1000 ? 4 : 8;
-    parallel::ParallelWorld world(heap_of_spheres(count, across), PhysicsSettings{});
+    parallel::ParallelStepper world(heap_of_spheres(count, across), PhysicsSettings{});
     threads.run([&] {
         for (int i = 0; i < 480; ++i) world.step(kStep);
     });
@@ -173,7 +173,7 @@ struct StepBeforeSolver {
 
     explicit StepBeforeSolver(const Heap& heap) {
         StageCopy found(Stage::kSolveIslands);
-        parallel::ParallelWorld world(heap.bodies, PhysicsSettings{});
+        parallel::ParallelStepper world(heap.bodies, PhysicsSettings{});
         world.memory() = heap.memory;
         world.observe(&found);
         parallel::Threads(1).run([&] { world.step(kStep); });
@@ -216,7 +216,7 @@ BENCHMARK(solver_iteration)->Arg(500)->Arg(4000)->UseManualTime()->Iterations(40
 void step_of_heap(State& state) {
     const Heap& heap = heap_of(static_cast<int>(state.range(0)));
     parallel::Threads threads(static_cast<int>(state.range(1)));
-    parallel::ParallelWorld world(heap.bodies, PhysicsSettings{});
+    parallel::ParallelStepper world(heap.bodies, PhysicsSettings{});
     world.memory() = heap.memory;
     threads.run([&] {
         world.step(kStep);
@@ -234,7 +234,7 @@ BENCHMARK(step_of_heap)
 void broad_phase(State& state) {
     const auto count = static_cast<int>(state.range(0));
     StageCopy found(Stage::kFindContacts);
-    parallel::ParallelWorld world(cloud_of_spheres(count, 0.5, Vec4::Zero()), PhysicsSettings{});
+    parallel::ParallelStepper world(cloud_of_spheres(count, 0.5, Vec4::Zero()), PhysicsSettings{});
     world.observe(&found);
     parallel::Threads(1).run([&] { world.step(kStep); });
     parallel::PairTable pairs;

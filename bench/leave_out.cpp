@@ -22,7 +22,7 @@
 #include "core/dynamics/solver/solver.hpp"
 #include "core/dynamics/step/stage_copy.hpp"
 #include "core/dynamics/step/step.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/film/simulate.hpp"
@@ -189,7 +189,7 @@ double time_of(const F& work) {
 
 /// Steps of a world that has settled.
 Work steps_of(scenes::Scene scene, int settle) {
-    auto world = std::make_shared<parallel::ParallelWorld>(
+    auto world = std::make_shared<parallel::ParallelStepper>(
         make_simulation(std::move(scene.bodies), *scene.physics, std::move(scene.joints)));
     for (int i = 0; i < settle; ++i) world->step(kSeconds);
     return [world] {
@@ -201,7 +201,7 @@ Work steps_of(scenes::Scene scene, int settle) {
 
 /// The islands of one step: built and solved.
 Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
-    parallel::ParallelWorld world(std::move(scene.bodies), *scene.physics);
+    parallel::ParallelStepper world(std::move(scene.bodies), *scene.physics);
     for (int i = 0; i < settle; ++i) world.step(kSeconds);
     auto found = std::make_shared<StageCopy>(Stage::kBuildIslands);
     world.observe(found.get());

@@ -5,7 +5,7 @@
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
 #include "core/dynamics/step/schedule.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 
 namespace tesserae::bench {
 
@@ -78,7 +78,7 @@ class RestingTowers {
         return sum / kBodies;
     }
 
-    parallel::ParallelWorld world_;
+    parallel::ParallelStepper world_;
     std::vector<Vec4> start_, settled_;
     StageClock clock_;
     StepReport report_;

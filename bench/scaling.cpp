@@ -14,7 +14,7 @@
 #include <fstream>
 #include <string>
 
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "parallel/trace.hpp"
 #include "scenes/generate/generate.hpp"
@@ -61,7 +61,7 @@ void row(const std::string& where, int threads, const std::string& quantity, dou
 State settled(const std::string& where, scenes::Scene& scene, int threads, int steps) {
     const double before = usage().resident, dt = 1 / scene.physics->steps_per_second;
     const auto count = static_cast<double>(scene.bodies.size());
-    parallel::ParallelWorld world(std::move(scene.bodies), *scene.physics);
+    parallel::ParallelStepper world(std::move(scene.bodies), *scene.physics);
     parallel::Threads(threads).run([&] {
         for (int i = 0; i < steps; ++i) world.step(dt);
     });
@@ -72,7 +72,7 @@ State settled(const std::string& where, scenes::Scene& scene, int threads, int s
 void measure(const std::string& where, const State& start, const PhysicsSettings& settings,
              double dt, int threads, int steps) {
     constexpr int kFirst = 2;  // find all pairs, and take memory
-    parallel::ParallelWorld world(start.bodies, settings);
+    parallel::ParallelStepper world(start.bodies, settings);
     world.memory() = start.memory;
     parallel::Trace trace;
     double wall = 0, cpu = 0, penetration = 0, contacts = 0;

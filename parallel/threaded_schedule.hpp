@@ -14,8 +14,6 @@ class ThreadedSchedule : public Schedule {
     /// Built in the arena of the calling thread, which its graph then uses.
     ThreadedSchedule() = default;
 
-    /// Drops what is kept to make the next step faster. It changes no result.
-    void forget_hints() { kept_pairs_.forget(); }
     /// Every message of islands is a span of the trace. Null ends that.
     void set_trace(Trace* trace) { trace_ = trace; }
 
@@ -27,6 +25,7 @@ class ThreadedSchedule : public Schedule {
     void solve_impacts(const Simulation& simulation, StepData& step) override;
     void solve_islands(const Simulation& simulation, StepData& step) override;
     void drop_corrections(const Simulation& simulation, StepData& step) override;
+    void forget_hints() override { kept_pairs_.forget(); }
 
   private:
     KeptPairs kept_pairs_;

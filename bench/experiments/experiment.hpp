@@ -8,8 +8,8 @@
 
 #include "bench/bodies.hpp"
 #include "bench/thread_time.hpp"
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 
 namespace tesserae::bench {
 
@@ -40,7 +40,7 @@ class Trial {
 
     const Bodies& bodies() const;
     const StepMemory& memory() const;
-    /// As World::joint_impulses().
+    /// As Stepper::joint_impulses().
     std::span<const Wrench> joint_impulses() const;
 
     /// Makes all steps of the duration.
@@ -48,7 +48,7 @@ class Trial {
     /// The same, with a call of after(time, report) behind each step.
     void run(const std::function<void(double, const StepReport&)>& after);
 
-    /// As World::observe().
+    /// As Stepper::observe().
     void observe(StageObserver* observer);
 
     /// Processor time of all steps [s].
@@ -58,7 +58,7 @@ class Trial {
     StepReport step();
 
     PhysicsSettings settings_;
-    std::variant<World, parallel::ParallelWorld> world_;
+    std::variant<Stepper, parallel::ParallelStepper> world_;
     double seconds_ = 0;
 };
 

@@ -29,7 +29,7 @@ std::vector<double> energy_changed(Bodies bodies, const Run& run) {
     shake(bodies, run.shake);
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     watch(world, 0.5);
     return {100 * std::abs(kinetic_energy(world.bodies()) / kinetic_energy(bodies) - 1)};
 }
@@ -76,7 +76,7 @@ std::vector<double> press(const Run& run) {
     plate.fixed_position = plate.fixed_rotation = true;
     add(bodies, plate, 1.64 * Vec4::UnitY(), -0.5 * Vec4::UnitY());
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     double fastest = 0;
     for (int i = 0; i < 576; ++i) {
         world.step(1 / kDefaultRate);
@@ -94,7 +94,7 @@ std::vector<double> flat_on_smaller(const Run& run) {
     add(bodies, below, {0, -0.25, 0, 0});
     add(bodies, box, {0, 2.5, 0, 0});
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     double spin = 0;
     for (int i = 0; i < 10 * 240; ++i) {
         world.step(1 / kDefaultRate);
@@ -110,7 +110,7 @@ std::vector<double> unequal_tower(const Run& run, double rate) {
         add(bodies, box_type(Vec4::Constant(0.4), i % 2 == 0 ? 0.1 : 100),
             {0, 0.2005 + 0.4005 * i, 0, 0});
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     const double deepest = watch(world, 10, rate).last_deepest;
     const double fallen = bodies.position.back()[1] - world.bodies().position.back()[1];
     return {1e3 * std::abs(fallen - 0.0045), 1e3 * deepest};
@@ -124,7 +124,7 @@ std::vector<double> slippery_cubes(const Run& run, double restitution) {
     cube.friction = 0, cube.restitution = restitution;
     for (int i = 0; i < 5; ++i) add(bodies, cube, {0, 0.5 + i, 0, 0});
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     const double fastest = watch(world, 10).last_fastest;
     return {1e3 * moved_aside(bodies, world.bodies()), 1e3 * fastest};
 }
@@ -158,7 +158,7 @@ std::vector<double> wedged_duoprism(const Run& run) {
         turned({21.217621982777384, -24.421291867121973, 11.72189306623795, -75.34981994993544,
                 -54.910669436387, 53.59051203422568}));
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     const Watched seen = watch(world, 20);
     return {1e3 * seen.last_fastest, 1e3 * seen.last_deepest};
 }
@@ -177,7 +177,7 @@ std::vector<double> pallet(const Run& run) {
             {0.5 * (i % 2) - 0.25, i / 8 == 0 ? 0.1 : 0.3, 0.5 * (i / 2 % 2) - 0.25,
              0.5 * (i / 4 % 2) - 0.25});
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     double rises = 0, off = 0;
     constexpr int kSteps = 240;
     for (int i = 0; i < kSteps; ++i) {

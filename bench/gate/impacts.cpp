@@ -50,7 +50,7 @@ std::vector<double> measure(const Run& run) {
     shake(bodies, run.shake);
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const double energy = kinetic_energy(bodies);
     const Vec4 momentum = total_momentum(bodies);
     const Bivector angular = total_angular_momentum(bodies);

@@ -45,7 +45,7 @@ std::vector<double> measure(const Run& run) {
             drawn_plane(engine, 5), drawn_rotor(engine));
     }
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     const Watched seen = watch(world, kSeconds);
     bool out = false;
     for (BodyId id = 0; id < bodies.size(); ++id)

@@ -25,7 +25,7 @@ Meeting meet(const Bodies& bodies, double rate) {
     PhysicsSettings settings;
     settings.gravity.setZero();
     settings.steps_per_second = rate;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const Vec4 closing = bodies.velocity[0] - bodies.velocity[1];
     Meeting meeting;
     for (int i = 1; i <= std::lround(0.2 * rate); ++i) {
@@ -75,7 +75,7 @@ std::vector<double> thrown(const Run& run) {
     shake(bodies, run.shake);
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const double start = kinetic_energy(bodies);
     double gain = 0;
     for (int i = 0; i < 24; ++i) {

@@ -52,7 +52,7 @@ std::vector<double> measure(const Run& run) {
              tile * (i / kLong / kWide - 0.5 * (kDeep - 1))});
     for (Bodies* bodies : {&tiles, &plane}) add(*bodies, body, place, velocity);
     shake(tiles, run.shake);
-    World on_tiles(tiles, gravity_of_10()), on_plane(plane, gravity_of_10());
+    Stepper on_tiles(tiles, gravity_of_10()), on_plane(plane, gravity_of_10());
     double path = 0, hop = 0;
     for (int i = 0; i < kSteps; ++i) {
         on_tiles.step(1 / kDefaultRate), on_plane.step(1 / kDefaultRate);

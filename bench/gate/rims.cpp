@@ -30,7 +30,7 @@ std::vector<double> thrown(const Run& run) {
     add(bodies, coin(run.scene % kCoins, 0.5, thickness, friction), 0.7 * Vec4::UnitY(),
         -Vec4::UnitY(), drawn_plane(engine, 4), drawn_rotor(engine));
     shake(bodies, run.shake);
-    World world(bodies, gravity_of_10());
+    Stepper world(bodies, gravity_of_10());
     const Watched seen = watch(world, 1.5);
     return {100 * seen.gain, static_cast<double>(seen.gain > kGain), 1e3 * seen.deepest};
 }
@@ -66,7 +66,7 @@ std::vector<double> rolled(const Run& run) {
     Bodies bodies = rolling(run.scene);
     shake(bodies, run.shake);
     const double radius = bounding_radius(bodies.type_of(1).shape);
-    World coarse(bodies, gravity_of_10()), fine(bodies, gravity_of_10());
+    Stepper coarse(bodies, gravity_of_10()), fine(bodies, gravity_of_10());
     const Watched seen = watch(coarse, kSeconds);
     watch(fine, kSeconds, kFiner * kDefaultRate);
     const double apart = (coarse.bodies().position[1] - fine.bodies().position[1]).norm();

@@ -44,7 +44,7 @@ Tower drawn_tower(int scene) {
 std::vector<double> measure(const Run& run) {
     Tower tower = drawn_tower(run.scene);
     shake(tower.bodies, run.shake);
-    World world(tower.bodies, gravity_of_10());
+    Stepper world(tower.bodies, gravity_of_10());
     const Watched seen = watch(world, kSeconds);
     double lean = 0;
     bool fallen = false;

@@ -82,7 +82,7 @@ Shape thin_shape(int kind, double size, double thickness) {
 
 }  // namespace
 
-Watched watch(World& world, double seconds, double rate) {
+Watched watch(Stepper& world, double seconds, double rate) {
     const Vec4 gravity = world.simulation().settings.gravity;
     const long steps = std::lround(seconds * rate);
     double kinetic = kinetic_energy(world.bodies());

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/bodies.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 namespace tesserae::bench::gate {
 
@@ -17,7 +17,7 @@ struct Watched {
 };
 
 /// Takes a world on, and looks at it after every step.
-Watched watch(World& world, double seconds, double rate = kDefaultRate);
+Watched watch(Stepper& world, double seconds, double rate = kDefaultRate);
 
 /// The greatest speed of a body's centre [m/s].
 double fastest_of(const Bodies& bodies);

@@ -5,7 +5,7 @@
 #include "bench/peers/engine.hpp"
 #include "bench/thread_time.hpp"
 #include "core/dynamics/step/stage_copy.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 
 namespace tesserae::bench {
@@ -106,7 +106,7 @@ class InTesserae : public PeerEngine {
     void next_step(int iterations, StageObserver& observer) const {
         PhysicsSettings settings = settings_;
         settings.iterations = iterations;
-        parallel::ParallelWorld world(world_->bodies(), settings);
+        parallel::ParallelStepper world(world_->bodies(), settings);
         world.memory() = world_->memory();
         world.step(1 / settings.steps_per_second);
         world.forget_hints();
@@ -117,7 +117,7 @@ class InTesserae : public PeerEngine {
     std::size_t count_;
     PhysicsSettings settings_;
     parallel::Threads threads_{1};  ///< outlives the world's graph
-    std::optional<parallel::ParallelWorld> world_;
+    std::optional<parallel::ParallelStepper> world_;
     StepReport report_;
 };
 

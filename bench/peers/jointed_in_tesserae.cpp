@@ -4,7 +4,7 @@
 #include "bench/bodies.hpp"
 #include "bench/peers/jointed.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 
 namespace tesserae::bench {
@@ -58,7 +58,7 @@ class JointedInTesserae : public JointedEngine {
   private:
     PhysicsSettings settings_;
     parallel::Threads threads_{1};  ///< outlives the world's graph
-    std::optional<parallel::ParallelWorld> world_;
+    std::optional<parallel::ParallelStepper> world_;
 };
 
 }  // namespace

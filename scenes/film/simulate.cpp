@@ -11,7 +11,7 @@
 #include "core/dynamics/motion_version.hpp"
 #include "core/dynamics/step/step.hpp"
 #include "core/error.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
 #include "scenes/process/signals.hpp"
@@ -58,7 +58,7 @@ TrajectoryHeader header_of(const Scene& scene, const SimulateOptions& options,
 /// What joints are and do where bodies are.
 /// @param world   none: nothing has acted on them
 JointFacts joint_facts_of(const Scene& scene, const Bodies& bodies,
-                          const parallel::ParallelWorld* world) {
+                          const parallel::ParallelStepper* world) {
     std::span<const Wrench> impulses;
     if (world) impulses = world->joint_impulses();
     JointFacts facts = room_for_joints(scene.joints.size());
@@ -100,7 +100,7 @@ const std::string& name_of_body(const Scene& scene, BodyId id) {
 }
 
 /// One step; a body that leaves the finite range is reported by its name.
-StepReport checked_step(const Scene& scene, parallel::ParallelWorld& world) {
+StepReport checked_step(const Scene& scene, parallel::ParallelStepper& world) {
     try {
         return world.step(1.0 / scene.physics->steps_per_second);
     } catch (const LeftFiniteRange& error) {
@@ -151,7 +151,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     }
     report.first_step = step;
     // Where nothing moves every row is the first.
-    std::optional<parallel::ParallelWorld> world;
+    std::optional<parallel::ParallelStepper> world;
     if (plan.moves) {
         world.emplace(make_simulation(std::move(start), *scene.physics, scene.joints));
         world->memory() = std::move(memory);

@@ -6,7 +6,7 @@
 
 #include "core/dynamics/step/step.hpp"
 #include "core/error.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "scenes/process/signals.hpp"
 
 namespace tesserae::scenes {
@@ -91,7 +91,7 @@ Rehearsal rehearse(const Scene& scene, const Plan& plan, std::uint64_t steps, do
     std::vector<StepCost> costs;
     std::uint64_t spacing = 1;
     const auto begin = Clock::now();
-    parallel::ParallelWorld world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+    parallel::ParallelStepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
     // One step at least, however late it is: without any there is nothing to guess from.
     while (rehearsal.taken < rehearsal.steps && (costs.empty() || since(begin) < seconds)) {
         if (stop_requested()) throw Stopped();

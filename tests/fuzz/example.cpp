@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/dynamics/motion_version.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "core/error.hpp"
 #include "render/frame.hpp"
 #include "scenes/film/simulate.hpp"
@@ -155,7 +155,7 @@ void ExampleTrajectory::append(scenes::TrajectoryWriter& writer, std::size_t lac
         step = resume->step;
         memory = std::move(resume->memory);
     }
-    World world(std::move(start), *scene_.physics);
+    Stepper world(std::move(start), *scene_.physics);
     world.memory() = std::move(memory);
     scenes::StepFacts facts;
     for (std::uint64_t row = writer.rows(); row + lacking < steps_.size(); ++row) {

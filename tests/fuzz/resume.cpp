@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "scenes/trajectory/resume_record.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 #include "tests/fuzz/example.hpp"

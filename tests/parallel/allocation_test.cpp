@@ -7,8 +7,8 @@
 #include <new>
 #include <vector>
 
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/parallel/counted_new.hpp"
@@ -65,9 +65,9 @@ TEST(Allocations, AreNoneInASettledStep) {
         for (PhysicsSettings settings : {PhysicsSettings{}, substepped_settings()}) {
             settings.sleeping = sleeping;
             const double rolling = settings.substeps > 1 ? 0.01 : 0;
-            World serial(resting_bodies(rolling), settings);
+            Stepper serial(resting_bodies(rolling), settings);
             EXPECT_EQ(allocations_after(serial, 60), 0u) << sleeping;
-            ParallelWorld world(resting_bodies(rolling), settings);
+            ParallelStepper world(resting_bodies(rolling), settings);
             Threads threads(2);
             // With sleeping: before and after all have fallen asleep.
             for (const int steps : sleeping ? std::vector{60, 130} : std::vector{60})
@@ -84,9 +84,9 @@ TEST(Allocations, AreNoneWhereAllSlides) {
     for (int i = 0; i < 200; ++i)
         add(bodies, box_type(Vec4::Ones()), {3.0 * i, 0.5, 0, 0}, {0, 0, 0.3, 0});
     for (BodyType& type : bodies.types) type.friction = 0;
-    World serial(bodies, PhysicsSettings{});
+    Stepper serial(bodies, PhysicsSettings{});
     EXPECT_EQ(allocations_after(serial, 60), 0u);
-    ParallelWorld world(bodies, PhysicsSettings{});
+    ParallelStepper world(bodies, PhysicsSettings{});
     Threads threads(2);
     threads.run([&] { EXPECT_EQ(allocations_after(world, 60), 0u); });
 }

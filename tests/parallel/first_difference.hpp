@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -74,15 +74,15 @@ std::string difference_of(const SomeWorld& a, const OtherWorld& b) {
 /// which they differ.
 inline std::string first_difference(const Bodies& bodies, const PhysicsSettings& settings,
                                     double dt, int steps, parallel::Threads& threads) {
-    World serial(bodies, settings);
-    parallel::ParallelWorld world(bodies, settings);
+    Stepper serial(bodies, settings);
+    parallel::ParallelStepper world(bodies, settings);
     for (int i = 0; i < steps; ++i) {
         serial.step(dt);
         threads.run([&] { world.step(dt); });
         const std::string found = difference_of(serial, world);
-        if (!found.empty()) return fmt::format("World and ParallelWorld, step {}: {}", i, found);
+        if (!found.empty()) return fmt::format("Stepper and ParallelStepper, step {}: {}", i, found);
     }
-    return "World and ParallelWorld run again do not differ";
+    return "Stepper and ParallelStepper run again do not differ";
 }
 
 }  // namespace tesserae::testing

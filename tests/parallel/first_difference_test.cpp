@@ -24,7 +24,7 @@ TEST(FirstDifference, NamesTheLowestBodyThatDiffersInABit) {
 }
 
 TEST(FirstDifference, NamesTheFirstContactThatDiffersOrThatOneLacks) {
-    World world(mixed_heap(20), PhysicsSettings{});
+    Stepper world(mixed_heap(20), PhysicsSettings{});
     for (int i = 0; i < 100; ++i) world.step(1.0 / 240);
     const StepMemory a = world.memory();
     ASSERT_GT(a.impulses.size(), 10u);
@@ -49,7 +49,7 @@ TEST(FirstDifference, FindsTheStep) {
     parallel::Threads threads(2);
     const Bodies bodies = mixed_heap(20);
     EXPECT_EQ(first_difference(bodies, {}, 1.0 / 240, 10, threads),
-              "World and ParallelWorld run again do not differ");
+              "Stepper and ParallelStepper run again do not differ");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/parallel/first_difference.hpp"
@@ -38,12 +38,12 @@ Simulation net() {
 class JointsOnThreads : public ::testing::TestWithParam<int> {};
 
 TEST_P(JointsOnThreads, HaveTheBitsOfTheSerialWorld) {
-    World serial(net());
+    Stepper serial(net());
     StepReport report;
     for (int i = 0; i < 120; ++i) report = serial.step(kStep);
     EXPECT_GT(report.contacts, 20u);
     Threads threads(GetParam());
-    ParallelWorld world(net());
+    ParallelStepper world(net());
     threads.run([&] {
         for (int i = 0; i < 120; ++i) world.step(kStep);
     });

@@ -8,8 +8,8 @@
 #include "core/dynamics/contacts/pairs.hpp"
 #include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/step/step.hpp"
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/parallel/first_difference.hpp"
@@ -71,8 +71,8 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
 /// The world steps to the serial one's bits, whether or not its pairs are forgotten now and then.
 void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, int steps,
                         const std::string& name) {
-    World serial(bodies, settings);
-    ParallelWorld keeping(bodies, settings), forgetting(bodies, settings);
+    Stepper serial(bodies, settings);
+    ParallelStepper keeping(bodies, settings), forgetting(bodies, settings);
     Threads threads(2);
     std::mt19937_64 engine(13);
     std::uint64_t contacts = 0;
@@ -83,7 +83,7 @@ void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, i
             if (engine() % 3 == 0) forgetting.forget_hints();
             forgetting.step(kSlowStep);
         });
-        for (const ParallelWorld* world : {&keeping, &forgetting})
+        for (const ParallelStepper* world : {&keeping, &forgetting})
             ASSERT_EQ(difference_of(serial, *world), "") << name << ", step " << i;
     }
     EXPECT_GT(contacts, 100u) << name;
@@ -115,7 +115,7 @@ TEST(KeptPairs, ChangeNoBitWhenBodiesFallAsleepAndWake) {
         add(bodies, sphere_type(0.4, 20), {1.2 * i, 0.5, 1.2 * i, -6.0 - 4 * i}, {0, 0, 0, 6});
     PhysicsSettings settings;
     settings.sleeping = true;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     std::uint64_t most = 0, woken = 0;
     for (int i = 0; i < 240; ++i) {
         const std::uint64_t asleep = world.step(kSlowStep).asleep;

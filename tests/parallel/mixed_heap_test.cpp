@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "core/dynamics/islands/islands.hpp"
-#include "core/dynamics/world.hpp"
-#include "parallel/parallel_world.hpp"
+#include "core/dynamics/stepper.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/parallel/first_difference.hpp"
@@ -15,7 +15,7 @@ using namespace tesserae::testing;
 TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
     constexpr int kSteps = 200;
     constexpr double kStep = 1.0 / 240;
-    World serial(mixed_heap(), PhysicsSettings{});
+    Stepper serial(mixed_heap(), PhysicsSettings{});
     std::uint64_t contacts = 0;
     const Bodies& end = serial.bodies();
     for (int i = 0; i < kSteps; ++i) {
@@ -35,7 +35,7 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
     EXPECT_GT(contacts, 5000u);
     for (int count : {1, 2, 3}) {
         Threads threads(count);
-        ParallelWorld world(mixed_heap(), PhysicsSettings{});
+        ParallelStepper world(mixed_heap(), PhysicsSettings{});
         threads.run([&] {
             for (int i = 0; i < kSteps; ++i) world.step(kStep);
         });
@@ -45,10 +45,10 @@ TEST(MixedHeap, HasTheBitsOfTheSerialWorldAndStaysAboveTheFloor) {
 }
 
 void expect_serial_bits(const Bodies& bodies, const PhysicsSettings& settings, int steps,
-                        const World& serial, const std::vector<int>& counts = {1, 2, 3}) {
+                        const Stepper& serial, const std::vector<int>& counts = {1, 2, 3}) {
     for (const int count : counts) {
         Threads threads(count);
-        ParallelWorld world(bodies, settings);
+        ParallelStepper world(bodies, settings);
         threads.run([&] {
             for (int i = 0; i < steps; ++i) world.step(1.0 / 80);
         });
@@ -66,7 +66,7 @@ PhysicsSettings substepped() {
 }
 
 TEST(MixedHeap, HasTheBitsOfTheSerialWorldWithSubsteps) {
-    World serial(mixed_heap(), substepped());
+    Stepper serial(mixed_heap(), substepped());
     for (int i = 0; i < 100; ++i) serial.step(1.0 / 80);
     expect_serial_bits(mixed_heap(), substepped(), 100, serial);
 }
@@ -84,7 +84,7 @@ void expect_serial_bits_on_internal_edges(int steps) {
         add(bodies, 1 + static_cast<std::uint32_t>(i % 3),
             {0.7 * (i % 7) + 0.9, 0.15, 0.7 * (i / 7 % 7) + 0.9, 0.7 * (i / 49) + 0.9},
             {1.0 - 0.01 * i, 0, 0.5, 0.005 * i});
-    World serial(bodies, {});
+    Stepper serial(bodies, {});
     for (int i = 0; i < steps; ++i) serial.step(1.0 / 80);
     expect_serial_bits(bodies, {}, steps, serial, {1, 2, 4});
 }
@@ -105,13 +105,13 @@ void expect_serial_bits_of_rolling(const std::vector<int>& counts) {
     PhysicsSettings sleepy;
     sleepy.sleeping = true;
     const Bodies small = with_rolling_friction(mixed_heap());
-    World serial(small, sleepy);
+    Stepper serial(small, sleepy);
     for (int i = 0; i < 80; ++i) serial.step(1.0 / 80);
     expect_serial_bits(small, sleepy, 80, serial, counts);
 
     Bodies large = with_rolling_friction(mixed_heap(6 * 6 * 6 * 4, 6));
     for (BodyId id = 7; id < large.size(); ++id) large.position[id] *= 0.4;
-    World packed(large, substepped());
+    Stepper packed(large, substepped());
     for (int i = 0; i < 2; ++i) packed.step(1.0 / 80);
     EXPECT_GT(packed.memory().impulses.size(), kColouredFrom);
     expect_serial_bits(large, substepped(), 2, packed, counts);
@@ -127,7 +127,7 @@ TEST(RollingFrictionSlow, HasTheBitsOfTheSerialWorldInSmallAndLargeIslands) {
 /// One island, with enough contacts to be coloured.
 TEST(LargeIsland, HasTheBitsOfTheSerialWorldAtAnyNumberOfThreads) {
     const Bodies bodies = packed_spheres([](int i) { return sphere_type(0.5, 1 + i % 3, 0.5); });
-    World serial(bodies, substepped());
+    Stepper serial(bodies, substepped());
     std::uint64_t contacts = 0;
     for (int i = 0; i < 6; ++i) contacts = serial.step(1.0 / 80).contacts;
     EXPECT_GT(contacts, 2 * kColouredFrom);
@@ -146,7 +146,7 @@ void expect_serial_bits_of_all_shapes(const std::vector<int>& counts) {
     add(bodies, sphere_type(2, 100, 0.5), {0, 1.5, 0, 0});
     PhysicsSettings settings = substepped();
     settings.substeps = 2;
-    World serial(bodies, settings);
+    Stepper serial(bodies, settings);
     for (int i = 0; i < 2; ++i) serial.step(1.0 / 80);
     EXPECT_GT(serial.memory().impulses.size(), 2 * kColouredFrom);
     expect_serial_bits(bodies, settings, 2, serial, counts);
@@ -170,7 +170,7 @@ TEST(SleepingStacks, HaveTheBitsOfTheSerialWorld) {
         add(bodies, sphere_type(0.4, 20), {1.5 * i, 8, 1.5 * i, -6}, {0, 0, 0, 5});
     PhysicsSettings settings = substepped();
     settings.sleeping = true;
-    World serial(bodies, settings);
+    Stepper serial(bodies, settings);
     std::uint64_t most = 0, woken = 0;
     for (int i = 0; i < 120; ++i) {
         const std::uint64_t asleep = serial.step(1.0 / 80).asleep;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/contact/find_contacts.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "scenes/load/load.hpp"
 #include "scenes/plan/plan.hpp"
 
@@ -51,7 +51,7 @@ struct Meetings {
 
 TEST(Gallery, ShapesMeetInAllNinePairsAndNothingPassesThrough) {
     const Scene scene = load_scene(TESSERAE_SOURCE_DIR "/scenes/gallery/shapes.toml", {});
-    World world(scene.bodies, *scene.physics);
+    Stepper world(scene.bodies, *scene.physics);
     Meetings meetings;
     for (int step = 0; step < 720; ++step) {
         world.step(1 / scene.physics->steps_per_second);
@@ -67,7 +67,7 @@ TEST(Gallery, ShapesMeetInAllNinePairsAndNothingPassesThrough) {
 
 TEST(Gallery, TheDrumsMixerStirsAndIsNotHeldUp) {
     const Scene scene = load_scene(TESSERAE_SOURCE_DIR "/scenes/gallery/drum.toml", {});
-    World world(scene.bodies, *scene.physics);
+    Stepper world(scene.bodies, *scene.physics);
     const auto of_mixer = [&](BodyId id) { return !world.bodies().is_movable(id); };
     // From 0.8 s on the heap lies around the mixer; it would be at rest without.
     std::uint64_t touched = 0;

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dynamics/islands/islands.hpp"
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 #include "parallel/threads.hpp"
 #include "scenes/generate/generate.hpp"
 #include "scenes/load/hash.hpp"
@@ -38,7 +38,7 @@ struct End {
 };
 
 End end_of(const Scene& scene, int steps) {
-    parallel::ParallelWorld world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+    parallel::ParallelStepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
     parallel::Threads(2).run([&] {
         for (int i = 0; i < steps; ++i) world.step(1 / scene.physics->steps_per_second);
     });

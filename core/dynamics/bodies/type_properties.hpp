@@ -46,7 +46,7 @@ struct TypeProperties {
 };
 
 /// Returns the properties of each of bodies.types.
-/// @param jointed   bodies that have joints
+/// @param jointed   bodies that have joints, or that something else besides contacts may turn
 std::vector<TypeProperties> type_properties(const Bodies& bodies,
                                             std::span<const BodyId> jointed = {});
 

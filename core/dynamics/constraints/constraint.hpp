@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "core/body_id.hpp"
 #include "core/dynamics/constraints/wrench.hpp"
@@ -18,9 +17,6 @@ namespace tesserae {
 struct BodyMotion;
 struct Simulation;
 struct StepData;
-
-/// The number that stands for the world, to which a body may be joined. It never moves.
-constexpr BodyId kWorld = std::numeric_limits<BodyId>::max();
 
 /// The most rows of a constraint: two bodies move relative to each other in 4 + 6 ways.
 constexpr int kMostRows = 10;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <variant>
@@ -9,6 +8,7 @@
 
 #include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/constraints/frame_joint.hpp"
+#include "core/dynamics/constraints/joint_description.hpp"
 #include "core/dynamics/constraints/line_joint.hpp"
 #include "core/dynamics/constraints/point_joint.hpp"
 
@@ -17,7 +17,7 @@ namespace tesserae {
 /// The kinds of joints. Each has a file with its coordinates, and this list names it.
 using JointKind = std::variant<PointJoint, LineJoint, FrameJoint>;
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+static_assert(FrameJoint::kSize == kJointCoordinates);
 
 /// Keeps a coordinate between two values.
 struct JointLimit {

@@ -50,7 +50,7 @@ void begin_contacts(const Simulation& simulation, StepData& step) {
     resize_anew(step.impulses, step.contacts.size());
     if (simulation.needs.rolling) resize_anew(step.angular_impulses, step.contacts.size());
     resize_anew(step.hit, step.contacts.size());
-    std::fill(step.hit.begin(), step.hit.end(), std::uint8_t{0});
+    std::fill(step.hit.begin(), step.hit.end(), 0.0);
     step.residual.clear();
     if (!simulation.needs.rims) return;
     resize_anew(step.rises, step.contacts.size());

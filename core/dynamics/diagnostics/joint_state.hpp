@@ -14,7 +14,7 @@ struct JointState {
 };
 
 /// Returns the state of a joint.
-/// @param impulse   see World::joint_impulses()
+/// @param impulse   see Stepper::joint_impulses()
 JointState state_of(const Joint& joint, const Bodies& bodies, const Wrench& impulse);
 
 /// Returns the one coordinate of a joint that it does not hold; -1 if there are none or several.

@@ -178,7 +178,7 @@ void ImpactPatches::give_up(StepData& step, const Patched& patched) const {
     }
     for (std::size_t i = patched.runs.begin; i < patched.runs.end; ++i) {
         const ContactList::Run run = step.contacts.nth_run(step.islands.runs[i]);
-        std::fill(step.hit.data() + run.begin, step.hit.data() + run.end, 0);
+        std::fill(step.hit.data() + run.begin, step.hit.data() + run.end, 0.0);
     }
     step.awaits[patched.island] = Awaits::kImpact;
 }

@@ -93,6 +93,15 @@ void integrate_velocities(const Simulation& simulation, StepData& step, Range bo
         const double scale = simulation.type_of(id).gravity_scale;
         if (scale != 0 && !is_asleep(step, id)) step.velocity[id] += scale * change;
     }
+    if (simulation.forces.empty()) return;
+    for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
+        const TypeProperties& type = simulation.type_of(static_cast<BodyId>(i));
+        const auto& [force, moment] = simulation.forces[i];
+        step.velocity[i] += step.h * type.inverse_mass * force;
+        if (moment == Bivector{}) continue;
+        const Bivector impulse = step.h * moment;
+        step.angular_velocity[i] += angular_response(type, step.rotor[i], impulse);
+    }
 }
 
 void damp_half(const Simulation& simulation, StepData& step, Range bodies) {

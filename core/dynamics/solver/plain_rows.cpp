@@ -319,7 +319,7 @@ void PlainRows::keep() {
     others_.keep(cause_);
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         if (cause_ == Cause::kImpact) {
-            step_.hit[contact] = row.normal_impulse > 0;
+            step_.hit[contact] = row.normal_impulse;
             return;
         }
         step_.impulses[contact] = contact_impulse(row.normal_impulse, row.tangent_impulse);

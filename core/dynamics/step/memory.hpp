@@ -12,6 +12,7 @@
 #include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/constraints/wrench.hpp"
 #include "core/dynamics/step/kept_impulses.hpp"
+#include "core/dynamics/step/report.hpp"
 
 namespace tesserae {
 
@@ -60,16 +61,5 @@ struct StepMemory {
     double time = 0;                  ///< time of all steps so far [s]; for messages only
 };
 constexpr BodyId kAwake = std::numeric_limits<BodyId>::max();
-
-/// What a step found in the middle of its last sub-step. Contacts of sleeping bodies count as they
-/// were when the bodies fell asleep, but their overlap does not.
-struct StepReport {
-    std::uint64_t contacts = 0;   ///< contact points that touch or overlap
-    double penetration = 0;       ///< deepest overlap [m], >= 0
-    double mean_penetration = 0;  ///< mean overlap of these points [m], >= 0
-    double residual = 0;  ///< largest change of a contact's normal velocity that the solver still
-                          ///< made in its last iteration [m/s]
-    std::uint64_t asleep = 0;  ///< number of bodies asleep
-};
 
 }  // namespace tesserae

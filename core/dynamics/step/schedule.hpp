@@ -5,7 +5,7 @@
 
 namespace tesserae {
 
-/// The stages of a step, as World::step calls them. All but the last take place once a sub-step;
+/// The stages of a step, as Stepper::step calls them. All but the last take place once a sub-step;
 /// kStopFastBodies only after halves in which something is fast.
 enum class Stage {
     kAdvanceFirstHalf,
@@ -60,6 +60,9 @@ class Schedule {
     virtual void solve_impacts(const Simulation& simulation, StepData& step);
     virtual void solve_islands(const Simulation& simulation, StepData& step);
     virtual void drop_corrections(const Simulation& simulation, StepData& step);
+
+    /// Drops what is kept to make the next step faster. It changes no result.
+    virtual void forget_hints() {}
 };
 
 }  // namespace tesserae

@@ -44,7 +44,7 @@ LeftFiniteRange::LeftFiniteRange(BodyId id, double t)
       time(t) {}
 
 Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
-                           std::vector<Joint> joints) {
+                           std::vector<Joint> joints, std::span<const BodyId> turned) {
     const std::size_t count = bodies.size();
     if (bodies.position.size() != count || bodies.rotor.size() != count ||
         bodies.velocity.size() != count || bodies.angular_velocity.size() != count)
@@ -59,11 +59,11 @@ Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
 
     Simulation simulation;
     simulation.joints = make_joints(std::move(joints), bodies);
-    std::vector<BodyId> jointed;
+    std::vector<BodyId> not_only_touched(turned.begin(), turned.end());
     for (const Joint& joint : simulation.joints.all)
         for (const BodyId id : {joint.a, joint.b})
-            if (id != kWorld) jointed.push_back(id);
-    simulation.types = type_properties(bodies, jointed);
+            if (id != kWorld) not_only_touched.push_back(id);
+    simulation.types = type_properties(bodies, not_only_touched);
     simulation.needs = needs_of(bodies, simulation.types);
     simulation.bodies = std::move(bodies);
     simulation.settings = settings;
@@ -200,7 +200,7 @@ void sum_contacts(StepData& step, Range contacts) {
             // those that do not is 0.
             const double separation = step.contacts.separation(i);
             const double overlap = std::max(0.0, -separation);
-            const int touches = !(separation > 0), is_hit = step.hit[i] != 0;
+            const int touches = !(separation > 0), is_hit = step.hit[i] > 0;
             const int pushes = step.impulses[i].normal > 0;
             sums.contacts += touches | pushes | is_hit;
             sums.sum += overlap;

@@ -159,6 +159,7 @@ struct Simulation {
     std::vector<TypeProperties> types;  ///< by body type
     Joints joints;
     Needs needs;
+    std::vector<Wrench> forces;  ///< on every body, about its centre [N, N m]; empty where none act
 
     const TypeProperties& type_of(BodyId id) const { return types[bodies.type[id]]; }
     /// Returns whether contacts can change the motion of a body; kWorld never moves.
@@ -196,7 +197,8 @@ struct StepData {
     std::vector<RollingRow> rolling_rows;  ///< of `rows`, where there is rolling friction
     ColouredIslands coloured;              ///< the islands that are coloured
     std::vector<ContactImpulse> impulses;  ///< of every contact, the last sub-step's at first
-    std::vector<std::uint8_t> hit;         ///< of every contact: an impact pushed it
+    std::vector<double> hit;               ///< of every contact: the normal impulse of an impact
+                                           ///< [N s], >= 0
     /// For every contact, where there are rims: see rise_of() and slip_on_rim().
     std::vector<double> rises;
     std::vector<Vec4> rim_slips;

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -22,11 +22,11 @@ Rotor rotor_between(const Vec4& from, const Vec4& to) {
 }
 
 /// What a box points down with: straight down in its own frame.
-Vec4 down_of(const World& world, BodyId id) {
+Vec4 down_of(const Stepper& world, BodyId id) {
     return rotate(reverse(world.bodies().rotor[id]), -Vec4::UnitY());
 }
 
-double speed(const World& world, BodyId id) {
+double speed(const Stepper& world, BodyId id) {
     return world.bodies().velocity[id].norm() + norm(world.bodies().angular_velocity[id]);
 }
 
@@ -40,7 +40,7 @@ TEST(BoxOnPlane, StandsOnEachOfItsCells) {
             add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
             add(bodies, box_type(size, 2), start, Vec4::Zero(), {},
                 rotor_between(u, -Vec4::UnitY()));
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             run(world, 480);
             // The solver leaves overlaps up to the slop alone: 0.005 of the least half side, 0.3 m.
             EXPECT_LT((world.bodies().position[1] - start).norm(), 0.0015) << u.transpose();
@@ -62,7 +62,7 @@ void expect_fall(const Vec4& size, const std::vector<int>& axes, int t, double s
     const double height = 0.5 * u.cwiseAbs().dot(size);
     add(bodies, box_type(size, 2), {0, height, 0, 0}, Vec4::Zero(), {},
         rotor_between(u, -Vec4::UnitY()));
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     const auto energy = [&] {
         return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
     };
@@ -119,7 +119,7 @@ TEST(CapsuleOnBox, LiesLevel) {
     PhysicsSettings settings;
     settings.iterations = 160;
     settings.tolerance = 0;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const auto end_height = [&](double end) {
         const Vec4 axis = rotate(world.bodies().rotor[id], Vec4::UnitY());
         return world.bodies().position[id][1] + end * 0.4 * axis[1];
@@ -146,7 +146,7 @@ TEST(Stack, OfTwoBoxesStands) {
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         add(bodies, box_type({1, 1, 1, 1}, 2), {0, 0.5, 0, 0});
         add(bodies, box_type(upper, 1), {0.05, 1 + 0.5 * upper[1], -0.1, 0.1});
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 720);
         for (BodyId id : {1, 2}) {
             EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3) << id;
@@ -165,7 +165,7 @@ TEST(Stack, CapsulesSideBySideCarryABox) {
     const Rotor along_z = rotor_between(Vec4::UnitY(), Vec4::UnitZ());
     for (double x : {-0.4, 0.4}) add(bodies, capsule, {x, 0.3, 0, 0}, Vec4::Zero(), {}, along_z);
     add(bodies, box_type({1.4, 0.4, 1, 1}, 1), {0, 0.8, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     run(world, 480);
     // Less than the slop of the thinnest, the box: 0.005 of 0.2 m. Rollers do creep, at the rate
     // that the last bit of tilt gives.
@@ -196,7 +196,7 @@ void expect_crosswise_boxes_part(std::uint64_t seeds) {
                 add(bodies, type, {0, 0.5 * size[1], 0, 0});
                 add(bodies, type, {0, 1.5 * size[1] + fall, 0, 0}, Vec4::Zero(), {},
                     crosswise(random));
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 for (int i = 0; i < 480; ++i)
                     ASSERT_LT(world.step(kStep).penetration, 0.2 * size[1]) << size[1] << seed;
                 const Bodies& now = world.bodies();
@@ -230,7 +230,7 @@ TEST(StackSlow, OfSheetsThatFallAslantDoesNotMerge) {
                 Vec4::Zero(), {}, rotor);
             height += half;
         }
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         for (int i = 0; i < 959; ++i) world.step(kStep);
         EXPECT_LT(world.step(kStep).penetration, 0.1 * size[1]) << seed;
     }

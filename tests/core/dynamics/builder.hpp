@@ -11,7 +11,7 @@
 #include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/step/memory.hpp"
 #include "core/dynamics/step/settings.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 namespace tesserae::testing {
 
@@ -82,12 +82,12 @@ inline PhysicsSettings without_gravity() {
     return settings;
 }
 
-inline void run(World& world, int steps) {
+inline void run(Stepper& world, int steps) {
     for (int i = 0; i < steps; ++i) world.step(kStep);
 }
 
 /// Of its bodies [m/s].
-inline double fastest_of(const World& world) {
+inline double fastest_of(const Stepper& world) {
     double fastest = 0;
     for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
     return fastest;

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -53,7 +53,7 @@ Bivector angular_momentum_of(const Bodies& bodies) {
 TEST(Collisions, KeepLinearAndAngularMomentum) {
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(implosion(0.6, 0.4), settings);
+    Stepper world(implosion(0.6, 0.4), settings);
     const Vec4 p = momentum(world.bodies());
     const Bivector L = angular_momentum_of(world.bodies());
     std::uint64_t contacts = 0;
@@ -68,7 +68,7 @@ TEST(Collisions, KeepLinearAndAngularMomentum) {
 TEST(Collisions, WithoutFrictionLeaveTheSpinAlone) {
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(implosion(0, 0.4), settings);
+    Stepper world(implosion(0, 0.4), settings);
     const Bodies before = world.bodies();
     for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
     for (BodyId id = 0; id < before.size(); ++id)
@@ -78,7 +78,7 @@ TEST(Collisions, WithoutFrictionLeaveTheSpinAlone) {
 TEST(Collisions, NeverAddEnergyWhenTheyAreInelastic) {
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(implosion(0.6, 0), settings);
+    Stepper world(implosion(0.6, 0), settings);
     double energy = kinetic_energy(world.bodies());
     const double start = energy;
     for (int i = 0; i < 480; ++i) {

@@ -8,7 +8,7 @@
 #include "core/dynamics/constants.hpp"
 #include "core/dynamics/constraints/contact_row.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "core/shape/cubinder.hpp"
 #include "core/shape/spherinder.hpp"
 #include "tests/core/dynamics/builder.hpp"
@@ -35,7 +35,7 @@ Bodies tower(const std::vector<double>& masses, const Vec4& place = Vec4::Zero()
 
 /// How far any centre has moved after a time [m].
 double moved(const Bodies& bodies, const PhysicsSettings& settings, double seconds) {
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     for (int i = 0; i < 240 * seconds; ++i) world.step(1.0 / 240);
     double most = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -105,7 +105,7 @@ TEST(Extreme, ElasticSpheresKeepTheirEnergyForAHundredThousandSteps) {
     }
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const double start = kinetic_energy(bodies);
     for (int i = 0; i < 100000; ++i) world.step(1.0 / 240);
     // Single bounces are exact; two at once of the same sphere are solved in turn, which loses or
@@ -126,7 +126,7 @@ TEST(Extreme, OverlapIsPushedOutAlongTheNormals) {
             exp(Bivector{-lean / 2, 0, 0, 0, 0, 0}));
         PhysicsSettings settings;
         settings.gravity.setZero();
-        World world(make_simulation(bodies, settings), ColouredFrom(coloured_from));
+        Stepper world(make_simulation(bodies, settings), ColouredFrom(coloured_from));
         world.step(1.0 / 240);
         const Vec4 moved = world.bodies().position[1] - bodies.position[1];
         EXPECT_GT(moved.y(), 1e-4);
@@ -136,7 +136,7 @@ TEST(Extreme, OverlapIsPushedOutAlongTheNormals) {
 
 /// What overlaps rests, and is in what it touches by no more than the solver leaves alone, 4 s on.
 void expect_pushed_out(const Bodies& bodies) {
-    World world(bodies, impulse());
+    Stepper world(bodies, impulse());
     StepReport report;
     for (int i = 0; i < 960; ++i) report = world.step(1.0 / 240);
     EXPECT_LT(report.penetration, 0.5 * kSlopOfBox);
@@ -188,7 +188,7 @@ TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
             add(bodies, log, {-side, 0.99 * side, 0, 0});
             add(bodies, log, {side, 0.99 * side, 0.01, 0});
             add(bodies, log, {0.02 * side, side + up, 0, 0.01});
-            World world(bodies, impulse());
+            Stepper world(bodies, impulse());
             double fastest = 0;
             for (int i = 0; i < 3 * steps; ++i) {
                 world.step(1 / steps);
@@ -205,7 +205,7 @@ TEST(Extreme, BodiesThatStartDeepInEachOtherDoNotExplode) {
         Bodies bodies;
         for (int i = 0; i < 8; ++i)
             add(bodies, sphere_type(0.5, 1000, 0.5), {0.01 * i, 0.01 * i, 0.005 * (i % 3), 0});
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         double fastest = 0;
         for (int i = 0; i < 960; ++i) {
             world.step(1.0 / 240);
@@ -252,7 +252,7 @@ std::pair<double, double> sunk_and_won(const BodyType& type, const Rotor& rotor,
     };
     const BodyId body =
         add(bodies, type, {0, height(rotor) + 0.3, 0, 0}, {0.3, 0, 0.1, 0}, {}, rotor);
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const auto energy = [&] {
         return kinetic_energy(world.bodies()) -
                type.mass * kDown.dot(world.bodies().position[body]);
@@ -314,7 +314,7 @@ void expect_cards_lie(int bodies_thrown) {
         const Vec4 a = random_vector(random, 2), b = random_vector(random, 2);
         const BodyId body = add(bodies, type, {0, 1.2 * size + 0.1, 0, 0}, Vec4::Zero(), {},
                                 exp(Bivector{a[0], a[1], a[2], b[0], b[1], b[2]}));
-        World world(bodies, impulse());
+        Stepper world(bodies, impulse());
         run(world, 960);
         EXPECT_GT(world.bodies().position[body][1], 0.3 * thin)
             << i << ": " << thin << " m, " << size << " m";
@@ -326,7 +326,7 @@ TEST(ExtremeSlow, CardsAndDiscsThatTumbleOntoAPlaneLieOnIt) { expect_cards_lie(3
 
 /// The most energy that bodies win from any time on, as a part of what they begin with.
 double part_won(const Bodies& bodies, double seconds, double step) {
-    World world(bodies, impulse());
+    Stepper world(bodies, impulse());
     const auto energy = [&] {
         return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
     };

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -15,7 +15,7 @@ TEST(FixedPosition, StaysWhileTheBodyIsMadeToSpin) {
     add(bodies, wheel);
     // Passes so that it grazes the wheel at 2 m/s, half a radius deep.
     add(bodies, sphere_type(1, 1, 1, 0), {-3, 1.5, 0, 0}, {2, 0, 0, 0});
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
     EXPECT_EQ(world.bodies().position[0], Vec4(Vec4::Zero()));
     EXPECT_EQ(world.bodies().velocity[0], Vec4(Vec4::Zero()));
@@ -29,7 +29,7 @@ TEST(FixedPosition, MeansThatGravityDoesNotAct) {
     Bivector spin;
     spin.xy = 2;
     add(bodies, held, {1, 2, 3, 4}, Vec4::Zero(), spin);
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     EXPECT_EQ(world.bodies().position[0], Vec4(1, 2, 3, 4));
     const Mat4 turned = to_matrix(world.bodies().rotor[0]);
@@ -42,7 +42,7 @@ TEST(FixedRotation, SlidesToAStopWithoutSpinning) {
     block.fixed_rotation = true;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
     add(bodies, block, {0, 0.5, 0, 0}, {2, 0, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     // Slows at mu g = 5 m/s^2 over v^2 / (2 mu g) = 0.4 m. In the step in which it stops the
     // mean velocity is right, the time that it acts wrong by up to h = 1/240 s.
@@ -59,7 +59,7 @@ TEST(KinematicBody, PushesAndIsNotHeldUp) {
     const Vec4 v{0, 0, 0, 1.5};
     add(bodies, pusher, Vec4::Zero(), v);
     add(bodies, sphere_type(0.5, 1e6), {0, 0, 0, 2.5});  // 1 m ahead, heavy
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
     EXPECT_EQ(world.bodies().velocity[0], v);
     EXPECT_NEAR(world.bodies().position[0][3], 3, 1e-12);
@@ -75,7 +75,7 @@ TEST(KinematicBody, DragsAlongWhatLiesOnItBySpinning) {
     spin.xy = -1;  // the top moves along +x at 1 m/s
     add(bodies, roller, Vec4::Zero(), Vec4::Zero(), spin);
     add(bodies, sphere_type(0.5, 1, 1, 0), {0, 1.5, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 24; ++i) world.step(1.0 / 240);
     EXPECT_EQ(world.bodies().angular_velocity[0], spin);
     // Rolling on a surface that runs at u: the contact points match, v + omega_xy R = u, and the

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -15,7 +15,7 @@ using namespace testing;
 
 TEST(Heap, OfEightySpheresComesToRestWithSmallOverlaps) {
     const PhysicsSettings settings;
-    World world(heap_of_spheres(80, 2), settings);
+    Stepper world(heap_of_spheres(80, 2), settings);
     const double start = potential_energy(world.bodies(), settings.gravity);
     for (int i = 0; i < 3360; ++i) world.step(kStep);
     double deepest = 0;
@@ -38,7 +38,7 @@ TEST(Heap, OfEightySpheresComesToRestWithSmallOverlaps) {
 }
 
 TEST(Heap, StaysBetweenItsWalls) {
-    World world(heap_of_spheres(80, 2), PhysicsSettings{});
+    Stepper world(heap_of_spheres(80, 2), PhysicsSettings{});
     for (int i = 0; i < 600; ++i) world.step(kStep);
     const Bodies& bodies = world.bodies();
     for (BodyId id = 7; id < bodies.size(); ++id) {
@@ -51,11 +51,11 @@ TEST(Heap, StaysBetweenItsWalls) {
 }
 
 TEST(Heap, ContinuesBitForBitFromItsBodiesAndMemory) {
-    World world(heap_of_spheres(80, 2), PhysicsSettings{});
+    Stepper world(heap_of_spheres(80, 2), PhysicsSettings{});
     for (int i = 0; i < 300; ++i) world.step(kStep);
-    World resumed(world.bodies(), PhysicsSettings{});
+    Stepper resumed(world.bodies(), PhysicsSettings{});
     resumed.memory() = world.memory();
-    World forgetful(world.bodies(), PhysicsSettings{});
+    Stepper forgetful(world.bodies(), PhysicsSettings{});
     for (int i = 0; i < 100; ++i) {
         const StepReport expected = world.step(kStep), report = resumed.step(kStep);
         forgetful.step(kStep);
@@ -68,7 +68,7 @@ TEST(Heap, ContinuesBitForBitFromItsBodiesAndMemory) {
 }
 
 TEST(Memory, AscendsByPair) {
-    World world(heap_of_spheres(80, 2), PhysicsSettings{});
+    Stepper world(heap_of_spheres(80, 2), PhysicsSettings{});
     for (int i = 0; i < 300; ++i) world.step(kStep);
     const auto& impulses = world.memory().impulses;
     ASSERT_GT(impulses.size(), 50u);

@@ -4,7 +4,7 @@
 
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -35,7 +35,7 @@ void expect_carried(const BodyType& block, double half_height) {
     PhysicsSettings settings;
     settings.iterations = 100;  // so that a box's eight corners agree
     settings.tolerance = 1e-6;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     double time = 0;
     for (int i = 0; i < 240; ++i) {
         world.step(kStep);
@@ -70,7 +70,7 @@ TEST(ClosingWall, PushesAtItsOwnSpeedOrThrowsAtTwiceThat) {
             const Vec4 v{0, 0, 0, wall_speed};
             add(bodies, kinematic(box_type({9, 9, 9, 0.2}), 0.3), {0, 0, 0, -1.1}, v);
             add(bodies, with_surface(type, 0.3, restitution));
-            World world(bodies, without_gravity());
+            Stepper world(bodies, without_gravity());
             for (int i = 0; i < 240; ++i) world.step(kStep);
             // The wall is 0.5 m from the body: it hits at 1/6 s.
             const double speed = (1 + restitution) * wall_speed;
@@ -94,7 +94,7 @@ TEST(KinematicRotation, IsConstantInTwoPlanesAtOnce) {
     BodyType spinner = box_type({1, 2, 3, 4});
     spinner.fixed_rotation = true;
     add(bodies, spinner, {0, 50, 0, 0}, {0, 0, 0, 1}, any, start);
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     constexpr int kSteps = 100'000;
     for (int i = 0; i < kSteps; ++i) world.step(kStep);
     // Two roundings a half-step at 2^-53 each, were they all to add up; and the step itself is
@@ -119,7 +119,7 @@ TEST(Turntable, CarriesWhatLiesOnIt) {
     spin.xw = turning;
     add(bodies, kinematic(box_type({9, 1, 9, 9}), 1), {0, -0.5, 0, 0}, Vec4::Zero(), spin);
     add(bodies, rider, {radius, 0.4, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 480; ++i) world.step(kStep);
     // Friction (10 m/s^2) takes it up to 0.75 m/s in 0.075 s, far less than the 2 s; the velocity
     // is then that of the table where the body is at the end of the step.
@@ -153,8 +153,8 @@ struct Carousel {
         return add(bodies, with_surface(type, 0.8), place, velocity_at(spin, place), spin);
     }
     /// After it has turned by an angle [rad].
-    World turned(const PhysicsSettings& settings, double angle = 20) const {
-        World world(bodies, settings);
+    Stepper turned(const PhysicsSettings& settings, double angle = 20) const {
+        Stepper world(bodies, settings);
         for (int i = 0; i < angle / turning * 240; ++i) world.step(kStep);
         return world;
     }
@@ -169,7 +169,7 @@ void expect_kept_where_it_is(double angle) {
             carousel.ride(box_type({0.3, 0.3, 0.3, 0.3}, 3), {0.8, 0.15, 0, 0});
             for (int i = 0; i < 3; ++i)
                 carousel.ride(box_type({0.5, 0.1, 0.4, 0.3}, 1), {-0.5, 0.05 + 0.1 * i, 0, 0});
-            const World world = carousel.turned(PhysicsSettings{}, angle);
+            const Stepper world = carousel.turned(PhysicsSettings{}, angle);
             for (BodyId id = 1; id < carousel.bodies.size(); ++id) {
                 const Vec4 &was = carousel.bodies.position[id], &is = world.bodies().position[id];
                 EXPECT_NEAR(std::hypot(is[0], is[3]), std::hypot(was[0], was[3]), 2e-3)
@@ -196,7 +196,7 @@ TEST(Turntable, LetsABallRollInCircles) {
     // At -R y its surface moves with v + w.(-R y), where y ^ u takes y to u.
     const Bivector rolling = (1 / radius) * wedge(Vec4::UnitY(), velocity - surface);
     const BodyId id = add(carousel.bodies, ball, place, velocity, rolling);
-    const World world = carousel.turned(PhysicsSettings{});
+    const Stepper world = carousel.turned(PhysicsSettings{});
     const Vec4 &x = world.bodies().position[id], &v = world.bodies().velocity[id];
     EXPECT_NEAR(v.norm(), slow * reach, 2e-4 * slow * reach);
     EXPECT_NEAR(std::hypot(x[0], x[3]), reach, 2e-4 * reach);
@@ -217,7 +217,7 @@ TEST(KinematicBody, IsNotMovedByAHeapOnIt) {
                                   capsule_type(0.3, 0.5)};
         add(bodies, with_surface(types[i % 3], 0.5, 0.2), x);
     }
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     std::uint64_t contacts = 0;
     for (int i = 0; i < 720; ++i) contacts += world.step(kStep).contacts;
     ASSERT_GT(contacts, 1000u);
@@ -235,7 +235,7 @@ TEST(KinematicBody, PassesThroughOthersOfItsKind) {
     add(bodies, kinematic(box_type({1, 1, 1, 1})), {0, 0, 0, 0}, {0, -1, 0, 0}, {1, 0, 0, 0, 0, 2});
     add(bodies, kinematic(sphere_type(1)), {0.5, 0, 0, 0}, {-1, 0, 0, 0});
     add(bodies, kinematic(capsule_type(0.5, 1)), {0, 0, 0.5, 0}, {0, 0, -1, 0}, {0, 3, 0, 0, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 240; ++i) {
         const StepReport report = world.step(kStep);
         EXPECT_EQ(report.contacts, 0u);
@@ -252,7 +252,7 @@ TEST(FixedPosition, AlonePinsARodThatTurnsWhenHit) {
     rod.fixed_position = true;
     add(bodies, rod);
     add(bodies, sphere_type(0.3, 2, 0, 1), {1.5, 1, 0, 0}, {0, -2, 0, 0});
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     const double energy = kinetic_energy(bodies);
     const Bivector before = total_angular_momentum(bodies);
     for (int i = 0; i < 240; ++i) world.step(kStep);
@@ -278,7 +278,7 @@ TEST(FixedPosition, MovesAtItsVelocityAndIsFreeToTurn) {
     const Vec4 v{0, 2, 0, 0};
     add(bodies, rod, Vec4::Zero(), v);
     add(bodies, sphere_type(0.3, 2), {1.5, 1, 0, 0});
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     for (int i = 0; i < 120; ++i) world.step(kStep);
     EXPECT_EQ(world.bodies().velocity[0], v);
     EXPECT_NEAR(world.bodies().position[0][1], 1, 1e-13);
@@ -296,7 +296,7 @@ TEST(FixedRotation, DrivesLikeAWheelThatTurnsAtAGivenSpeed) {
     spin.xy = -4;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
     add(bodies, wheel, {0, 0.5, 0, 0}, Vec4::Zero(), spin);
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 240; ++i) world.step(kStep);
     EXPECT_NEAR(world.bodies().velocity[1][0], 2, 1e-12);
     EXPECT_NEAR(world.bodies().position[1][0], 2 - 0.4, 0.5 * 5 * kStep * kStep + 1e-12);

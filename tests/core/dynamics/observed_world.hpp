@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/dynamics/step/stage_copy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 namespace tesserae::testing {
 
@@ -24,7 +24,7 @@ inline BodyType held_type() {
 inline StepData solved(Bodies bodies, const PhysicsSettings& settings, double dt,
                        std::uint32_t coloured_from) {
     StageCopy copy(Stage::kFinishStep);
-    World world(make_simulation(std::move(bodies), settings), coloured_from);
+    Stepper world(make_simulation(std::move(bodies), settings), coloured_from);
     world.observe(&copy);
     world.step(dt);
     return copy.step;

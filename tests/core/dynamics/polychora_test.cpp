@@ -5,7 +5,7 @@
 
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/shape/oracle.hpp"
 
@@ -36,7 +36,7 @@ TEST(Polychora, StandOnEachOfTheirCells) {
         for (std::size_t i = 0; i<cells.size(); i += cells.size()> 24 ? 40 : 1)
             add(bodies, type, {3.0 * static_cast<double>(i), cells[i].plane.offset, 0, 0},
                 Vec4::Zero(), {}, laid_down(cells[i].plane.normal));
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 240);
         for (BodyId id = 1; id < bodies.size(); ++id) {
             const Bodies& now = world.bodies();
@@ -82,7 +82,7 @@ TEST(Polychora, FallOnTheCellThatTheyLeanToward) {
             add(bodies, type, {10.0 * static_cast<double>(bodies.size()), height, 0, 0},
                 Vec4::Zero(), {}, laid_down(down));
         }
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 2400);
         for (BodyId id = 1; id < bodies.size(); ++id) {
             const Vec4 down = -to_matrix(world.bodies().rotor[id]).row(1).transpose();
@@ -109,7 +109,7 @@ TEST(Polychora, RollWhereTheyHaveManyCells) {
             add(bodies, type, {100.0 * i, cell.plane.offset, 0, 0}, 2 * push.normalized(), {},
                 laid_down(cell.plane.normal));
         }
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 2400);
         const double slides = 4 / (2 * 0.5 * -PhysicsSettings{}.gravity[1]);
         double mean = 0;
@@ -134,7 +134,7 @@ TEST(Polychora, StandOnOneAnother) {
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         for (int i = 0; i < 3; ++i)
             add(bodies, type, {0, (2 * i + 1) * inradius, 0, 0}, Vec4::Zero(), {}, turn);
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 480);
         for (BodyId id = 1; id < bodies.size(); ++id) {
             const Bodies& now = world.bodies();
@@ -158,7 +158,7 @@ TEST(Polychora, OfManyCellsComeToRestOnOneAnother) {
     for (const int iterations : {10, 20, 40}) {
         PhysicsSettings settings;
         settings.iterations = iterations;
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         run(world, 1200);
         const Bodies& now = world.bodies();
         for (BodyId id = 0; id < 3; ++id)
@@ -188,7 +188,7 @@ TEST(Polychora, ThatAreFlatLieStill) {
             add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
             add(bodies, type, {0, height, 0, 0}, Vec4::Zero(), {},
                 exp(0.5 * Bivector{0.5 * pi + pi / p}));
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             run(world, 240);
             const double speed = world.bodies().velocity[1].norm();
             EXPECT_LT(speed, 1e-6) << p << ' ' << q << ' ' << ratio;
@@ -221,7 +221,7 @@ TEST(Polychora, FlyAlikeWhateverAxesTheyAreGivenIn) {
             type.shape = shape;
             Bodies bodies;
             add(bodies, type, Vec4::Zero(), Vec4::Zero(), Bivector{3, -1, 2, 0.5, 1, -2}, rotor);
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             run(world, 240);
             return world.bodies();
         };
@@ -247,7 +247,7 @@ TEST(Polychora, AreTurnedByContactsWithoutFriction) {
         Bodies bodies;
         add(bodies, type);
         add(bodies, sphere_type(0.1, 0.5), place - 0.2 * into, 2 * into);
-        World world(bodies, without_gravity());
+        Stepper world(bodies, without_gravity());
         run(world, 60);
         const Bodies& now = world.bodies();
         // From J = impulse, L = place ^ J and the bodies' momenta.

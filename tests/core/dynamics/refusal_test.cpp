@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -14,8 +14,8 @@ TEST(Simulation, RefusesArraysThatDoNotFit) {
     Bodies shorter = bodies, wrong_type = bodies;
     shorter.velocity.clear();
     wrong_type.type[0] = 1;
-    EXPECT_THROW(World(shorter, PhysicsSettings{}), InputError);
-    EXPECT_THROW(World(wrong_type, PhysicsSettings{}), InputError);
+    EXPECT_THROW(Stepper(shorter, PhysicsSettings{}), InputError);
+    EXPECT_THROW(Stepper(wrong_type, PhysicsSettings{}), InputError);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/dynamics/solver/sweep.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 
@@ -101,7 +101,7 @@ TEST(Tolerance, BoundsTheResidualWhereThereAreSweepsEnough) {
             PhysicsSettings settings;
             settings.tolerance = tolerance;
             settings.iterations = 10000;
-            World world(make_simulation(pyramid(3), settings), coloured_from);
+            Stepper world(make_simulation(pyramid(3), settings), coloured_from);
             for (int i = 0; i < 20; ++i) {
                 const double residual = world.step(kStep).residual;
                 EXPECT_LE(residual, tolerance) << "step " << i;
@@ -115,7 +115,7 @@ TEST(Tolerance, OfZeroMakesAllSweeps) {
         PhysicsSettings settings;
         settings.tolerance = tolerance;
         settings.iterations = iterations;
-        World world(pyramid(3), settings);
+        Stepper world(pyramid(3), settings);
         run(world, 20);
         return world.bodies();
     };
@@ -123,7 +123,7 @@ TEST(Tolerance, OfZeroMakesAllSweeps) {
     EXPECT_FALSE(same_bits(end_of(0, 200), end_of(0, 202)));
 }
 
-double mean_speed(const World& world) {
+double mean_speed(const Stepper& world) {
     double sum = 0;
     for (const Vec4& v : world.bodies().velocity) sum += v.norm();
     return sum / static_cast<double>(world.bodies().size());
@@ -138,7 +138,7 @@ TEST(Rest, OfTenBoards) {
         for (std::size_t i = 0; i < bodies.size(); ++i)
             if (bodies.is_movable(static_cast<BodyId>(i)))
                 bodies.position[i].x() += 1e-9 * start * static_cast<double>(i);
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 1200);
         EXPECT_LT(mean_speed(world), 1e-4) << start;
         EXPECT_LT(world.step(kStep).penetration, 0.5e-3);
@@ -155,7 +155,7 @@ TEST(Rest, OfSmallTowers) {
                 add_box(bodies, {1, 1, 1, 1},
                         {0.05 * std::sin(7 * i), 0.5 + (1 + gap) * i, 0.05 * std::cos(5 * i),
                          0.05 * std::sin(4 * i)});
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             run(world, 1200);
             EXPECT_LT(fastest_of(world), 2e-5) << height << " " << gap;
         }
@@ -168,7 +168,7 @@ TEST(RestSlow, OfTallTowersOfSmallCubes) {
             Bodies bodies = on_floor();
             for (int i = 0; i < height; ++i)
                 add_box(bodies, Vec4::Constant(side), {0, (i + 0.5) * side, 0, 0});
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             run(world, 2400);
             EXPECT_LT(fastest_of(world), 5e-4) << height << " of " << side;
         }
@@ -182,7 +182,7 @@ void expect_towers_rest(const std::vector<std::tuple<int, double, double>>& towe
         Bodies bodies = on_floor();
         for (int i = 0; i < height; ++i)
             add_box(bodies, Vec4::Constant(side), {0, (i + 0.5) * side + (i + 1) * gap, 0, 0});
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         double deepest = 0;
         for (int i = 0; i < 960; ++i) deepest = std::max(deepest, world.step(kStep).penetration);
         EXPECT_LT(deepest, 0.02 * side) << height << " of " << side;
@@ -214,7 +214,7 @@ Bodies wall_with_gaps(int columns, double side, double gap) {
 /// they went along directions.
 TEST(Rest, OfAWallThatStartsWithGaps) {
     const double side = 0.1;
-    World world(wall_with_gaps(8, side, 3e-4), PhysicsSettings{});
+    Stepper world(wall_with_gaps(8, side, 3e-4), PhysicsSettings{});
     double deepest = 0;
     for (int i = 0; i < 960; ++i) deepest = std::max(deepest, world.step(kStep).penetration);
     EXPECT_LT(deepest, 0.01 * side);
@@ -224,7 +224,7 @@ TEST(Rest, OfAWallThatStartsWithGaps) {
 /// Its contacts are too many for more than 13 sweeps but for those further ones: without these it
 /// sways by 37 mm/s, and ever more.
 TEST(RestSlow, OfALongerWallThatStartsWithGaps) {
-    World world(wall_with_gaps(16, 0.1, 1e-4), PhysicsSettings{});
+    Stepper world(wall_with_gaps(16, 0.1, 1e-4), PhysicsSettings{});
     run(world, 480);
     EXPECT_LT(fastest_of(world), 1e-3);
 }
@@ -243,7 +243,7 @@ TEST(Rest, OfAHeavyBoxOnALightOne) {
                     add(bodies, box,
                         {is_upper ? 0.05 : 0, is_upper ? 1 + gap + 0.5 * size : 0.5, 0, 0});
                 }
-                World world(bodies, PhysicsSettings{});
+                Stepper world(bodies, PhysicsSettings{});
                 run(world, 1200);
                 const Vec4 moved = world.bodies().position[2] - bodies.position[2];
                 // How far 1000 masses that land on one slip is rounding's: 0.02 to 20 mm of 48
@@ -259,7 +259,7 @@ TEST(Rest, OfTwentyStacksOfBoards) {
     Bodies bodies = on_floor();
     for (int i = 0; i < 200; ++i)
         add_box(bodies, {2, 0.1, 0.5, 0.5}, {0, 0.05 + 0.1 * (i % 10), 1.0 * (i / 10), 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     run(world, 480);
     EXPECT_LT(mean_speed(world), 1e-3);
     EXPECT_LT(world.step(kStep).penetration, 0.1e-3);
@@ -268,7 +268,7 @@ TEST(Rest, OfTwentyStacksOfBoards) {
 TEST(Rest, OfTenBoardsLetsThemSleep) {
     PhysicsSettings settings;
     settings.sleeping = true;
-    World world(ten_boards(), settings);
+    Stepper world(ten_boards(), settings);
     run(world, 480);
     EXPECT_EQ(world.step(kStep).asleep, 10u);
 }
@@ -281,7 +281,7 @@ double sway_of_wall(const PhysicsSettings& settings) {
         for (int column = 0; column < kColumns; ++column)
             add_box(bodies, {1, 0.5, 0.5, 0.5},
                     {1.05 * column + (row % 2 == 0 ? 0 : 0.25), 0.5 * (row + 0.5), 0, 0});
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     run(world, kSteps);
     double fastest = 0;
     for (int i = 0; i < kSteps / 2; ++i) {
@@ -313,7 +313,7 @@ TEST(Rest, OfAWallByTwelveSweeps) {
 
 /// In one large island, in float: four times the sweeps that left it at 4 mm/s.
 TEST(Rest, OfAPyramid) {
-    World world(pyramid(12), PhysicsSettings{});
+    Stepper world(pyramid(12), PhysicsSettings{});
     run(world, 720);
     EXPECT_LT(mean_speed(world), 2e-4);
     EXPECT_LT(world.step(kStep).penetration, 0.5e-3);
@@ -338,7 +338,7 @@ TEST(RestSlow, OfAPileOfLogsBetweenWalls) {
                 add(bodies, type,
                     {0, kRadius * (1 + row * std::sqrt(3.0)), kRadius * (2 * i + row - 4), 0},
                     Vec4::Zero(), {}, exp(Bivector{0.25 * pi}));
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         for (int i = 0; i < 3600; ++i) ASSERT_LT(world.step(kStep).penetration, 5e-3) << slack;
         for (BodyId id = 5; id < bodies.size(); ++id)
             EXPECT_LT(world.bodies().velocity[id].norm(), 2e-3) << slack;

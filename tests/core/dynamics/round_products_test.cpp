@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/contact/find_contacts.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/shape/oracle.hpp"
 
@@ -66,7 +66,7 @@ void expect_rest(const Standing& s, const BodyType& floor, const Vec4& floor_at,
             axis_down(s.axis, i % 2 ? 1 : -1));
     PhysicsSettings settings;
     settings.sleeping = false;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     run(world, 480);
     for (BodyId id = 1; id < bodies.size(); ++id) {
         const Bodies& now = world.bodies();
@@ -109,7 +109,7 @@ TEST(RoundProducts, LieSideBySide) {
     for (const Vec4& at : corners) add(bodies, log, at, Vec4::Zero(), {}, along_z);
     log.fixed_position = log.fixed_rotation = false;
     add(bodies, log, {0, std::sqrt(1 - 0.36), 0.3, 0}, Vec4::Zero(), {}, along_z);
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     run(world, 480);
     EXPECT_LT((world.bodies().position[3] - bodies.position[3]).norm(), 2e-3);
     EXPECT_LT(world.bodies().velocity[3].norm() + norm(world.bodies().angular_velocity[3]), 1e-5);
@@ -136,7 +136,7 @@ TEST(RoundProducts, RollAsFreelyAsTheyAreRound) {
             const Vec4 push = Vec4::Unit(along);
             add(bodies, type_of(s.shape), height_of(s) * Vec4::UnitY(), push, {},
                 axis_down(s.axis));
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             run(world, 480);
             const Vec4 v = world.bodies().velocity[1];
             EXPECT_LT((v - v[along] * push).norm(), 1e-6) << s.name;
@@ -189,7 +189,7 @@ TEST(RoundProducts, ThatLieBetweenOthersAHairOutOfLineDoNotSinkIn) {
             add(bodies, log, {x, std::sqrt(4 * radius * radius - x * x), 0, 0}, Vec4::Zero(), {},
                 exp(lean) * turn);
             add(bodies, plane_type(-Vec4::UnitX(), -x - radius, 0.5));
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             double deepest = 0;
             for (int step = 0; step < 480; ++step) {
                 const double now = world.step(kStep).penetration;
@@ -224,7 +224,7 @@ TEST(RoundProducts, ThatWobbleDownDoNotSinkIn) {
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         add(bodies, type, {0, 4 * radius, 0, 0}, {uniform(0, 0.5), 0, 0, 0}, spin,
             exp(lean) * axis_down(i % 2 == 0 ? 1 : 2));
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         double deepest = 0;
         for (int step = 0; step < 480; ++step)
             deepest = std::max(deepest, world.step(kStep).penetration);
@@ -250,7 +250,7 @@ TEST(RoundProducts, APlankThatRocksOnACubinderDoesNotSinkIn) {
             const Rotor turn = exp(Bivector{-0.5 * lean, 0, 0, 0, 0, 0});
             const Vec4 up = rotate(turn, Vec4::UnitY()), along = rotate(turn, Vec4::UnitX());
             add(bodies, plank, 0.11 * up - 0.1 * lean * along, Vec4::Zero(), {}, turn);
-            World world(bodies, PhysicsSettings{});
+            Stepper world(bodies, PhysicsSettings{});
             double deepest = 0;
             for (int i = 0; i < 480; ++i)
                 deepest = std::max(deepest, world.step(kStep).penetration);

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -53,7 +53,7 @@ std::vector<Place> mixed() {
 
 /// The bodies where they are after the run, in the order tower by tower.
 Bodies after_run(const std::vector<Place>& order, const PhysicsSettings& settings) {
-    World world(towers(order), settings);
+    Stepper world(towers(order), settings);
     std::uint64_t contacts = 0;
     for (int i = 0; i < kSteps; ++i) contacts += world.step(1.0 / 240).contacts;
     EXPECT_GT(contacts, 100u * kSteps);

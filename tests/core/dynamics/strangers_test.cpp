@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 // What is a kilometre away changes no bit: no switch of the whole scene changes a result.
@@ -102,13 +102,13 @@ Bodies part_of(const Bodies& bodies, std::size_t first, std::size_t count) {
 TEST(Strangers, FarAwayChangeNoBit) {
     for (const bool spheres_only : {true, false}) {
         const Bodies alone = heap_and_tower(spheres_only);
-        World world(alone, PhysicsSettings{});
+        Stepper world(alone, PhysicsSettings{});
         run(world, 150);
         EXPECT_GT(world.memory().impulses.size(), 50u);
         for (const Kind& kind : kinds()) {
             Bodies beside = alone;
             kind.add_to(beside, {0, kFar, kFar, 0});
-            World there(beside, PhysicsSettings{});
+            Stepper there(beside, PhysicsSettings{});
             run(there, 150);
             EXPECT_TRUE(same_bits(world.bodies(), part_of(there.bodies(), 0, alone.size())))
                 << kind.name << (spheres_only ? ", spheres" : "");

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/dynamics/step/stage_copy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 // One point of a rough body hits a plane, turning and aslant, in a plane of motion: beside the
@@ -105,7 +105,7 @@ void for_each_bounce(const See& see) {
         const BodyId id =
             add(bodies, type, {0, height, 0, 0}, {along, -fall, 0, 0},
                 Bivector{uniform(-8, 8), 0, 0, 0, 0, 0}, exp(Bivector{0.5 * angle, 0, 0, 0, 0, 0}));
-        World world(bodies, without_gravity());
+        Stepper world(bodies, without_gravity());
         StageCopy copy(Stage::kIntegrateVelocities);  // the impact is over
         world.observe(&copy);
         world.step(kStep);

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dynamics/motion/motion.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -17,7 +17,7 @@ TEST(Substeps, LeaveBodiesThatStartInsideEachOtherNoMoreThanTheLargestPush) {
         add(bodies, sphere_type(0.5), (1 - depth) * Vec4(1, 2, 0, 2) / 3);
         PhysicsSettings settings = substepped_settings();
         settings.gravity.setZero();
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
         const Bodies& end = world.bodies();
         EXPECT_LE((end.velocity[1] - end.velocity[0]).norm(),
@@ -34,7 +34,7 @@ TEST(Substeps, ABallBouncesToTheSameHeightWithAnyNumberOfThem) {
         add(bodies, sphere_type(0.5, 2, 0, 0.8), {0, 1.5, 0, 0});
         PhysicsSettings settings = substepped_settings();
         settings.substeps = substeps;
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         while (world.bodies().velocity[1][1] <= 0) world.step(1.0 / 240);
         const double v = world.bodies().velocity[1][1], y = world.bodies().position[1][1] - 0.5;
         EXPECT_NEAR(y + v * v / 20, 0.64, 1e-12) << substeps;
@@ -46,7 +46,7 @@ TEST(Substeps, ABallSlidesAndRollsExactly) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, 0.3));
     add(bodies, sphere_type(0.5, 2, 0.3), {0, 0.5, 0, 0}, {0, 0, 2.16, 2.88});
-    World world(bodies, substepped_settings());
+    Stepper world(bodies, substepped_settings());
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     EXPECT_LT((world.bodies().velocity[1] - Vec4(0, 0, 1.62, 2.16)).norm(), 1e-11);
     EXPECT_NEAR(world.bodies().position[1][1], 0.5, 1e-11);
@@ -55,9 +55,9 @@ TEST(Substeps, ABallSlidesAndRollsExactly) {
 TEST(Substeps, GiveTheBitsOfShorterSteps) {
     PhysicsSettings settings;
     settings.iterations = 4;
-    World fine(mixed_heap(), settings);
+    Stepper fine(mixed_heap(), settings);
     settings.substeps = 4;
-    World coarse(mixed_heap(), settings);
+    Stepper coarse(mixed_heap(), settings);
     // A quarter of 2^-6 is exact, so that both make the same sub-steps.
     for (int i = 0; i < 60; ++i) {
         const StepReport report = coarse.step(1.0 / 64);
@@ -79,7 +79,7 @@ TEST(Substeps, SeeWhatAContactMadeFast) {
     PhysicsSettings settings;
     settings.gravity.setZero();
     settings.substeps = 8;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     for (int i = 0; i < 3; ++i) world.step(1.0 / 60);
     // Equal masses, e = 1: each stops and hands its velocity on.
     for (const BodyId id : {0u, 1u}) EXPECT_LT(world.bodies().velocity[id].norm(), 1e-11);
@@ -99,7 +99,7 @@ TEST(Substeps, ABulletDoesNotPassAThinWall) {
                 const Vec4 direction = (Vec4::UnitX() + aside).normalized();
                 add(bodies, sphere_type(0.1, 1, 0.3), -(5 + 0.1 * start) * direction,
                     200 * direction);
-                World world(bodies, PhysicsSettings{});
+                Stepper world(bodies, PhysicsSettings{});
                 for (int i = 0; i < 10; ++i) {
                     world.step(1.0 / 60);
                     // In front of the wall, whose face is at -0.1, but for the slop.
@@ -135,7 +135,7 @@ TEST(Bounds, AreOutgrownInEveryDirectionAtTheSameDistance) {
 TEST(Substeps, MustBeAtLeastOne) {
     PhysicsSettings settings;
     settings.substeps = 0;
-    EXPECT_THROW(World(Bodies{}, settings), InputError);
+    EXPECT_THROW(Stepper(Bodies{}, settings), InputError);
 }
 
 }  // namespace

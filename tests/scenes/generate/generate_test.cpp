@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dynamics/diagnostics/joint_state.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "core/error.hpp"
 #include "tests/scenes/load/load_scene_text.hpp"
 
@@ -22,7 +22,7 @@ TEST(Generate, HasExactlyTheBodiesAskedForAndNoneStartsInAnother) {
             SCOPED_TRACE(std::string(name) + " " + std::to_string(bodies));
             const Scene scene = load_text(generated_scene(name, bodies));
             EXPECT_EQ(movable_bodies(scene), bodies);
-            World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+            Stepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
             // Half a step of falling moves them by rounding only.
             EXPECT_LT(world.step(1e-6).penetration, 1e-9);
         }
@@ -31,7 +31,7 @@ TEST(Generate, HasExactlyTheBodiesAskedForAndNoneStartsInAnother) {
 TEST(Generate, PyramidAndStacksStandAndAGasMoves) {
     const auto moved = [](const std::string& text) {
         const Scene scene = load_text(text);
-        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+        Stepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
         for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
         double farthest = 0;
         for (BodyId id = 0; id < scene.bodies.size(); ++id)
@@ -49,7 +49,7 @@ TEST(Generate, PyramidAndStacksStandAndAGasMoves) {
 TEST(Generate, WhatIsJoinedStaysJoined) {
     for (const char* name : {"chain", "grid", "bridge"}) {
         const Scene scene = load_text(generated_scene(name, 50));
-        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+        Stepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
         for (int i = 0; i < 480; ++i) world.step(1.0 / 240);
         double farthest = 0;
         for (const Joint& joint : scene.joints)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "render/tile/frame_scene.hpp"
 #include "scenes/film/film.hpp"
 #include "scenes/load/effective.hpp"
@@ -267,7 +267,7 @@ TEST(PlanOfMotion, SaysWhetherAnythingMoves) {
           falls + ball(0, "fixed = [\"position\"]"), falls + wall,
           falls + ball(0, held + "velocity = [1, 0, 0, 0]"), weightless + ball(0) + driven}) {
         const Scene scene = load_text(text);
-        World world(make_simulation(scene.bodies, *scene.physics, scene.joints));
+        Stepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
         for (int step = 0; step < 10; ++step) world.step(0.01);
         bool moved = false;
         for (BodyId id = 0; id < scene.bodies.size(); ++id)
@@ -291,7 +291,7 @@ TEST(PlanOfMotion, SaysWhatAStepNeeds) {
         for (const bool sleeps : {false, true}) {
             const Scene scene =
                 load_text("[physics]\nsleeping = " + toml_text(sleeps) + "\n" + bodies + wall);
-            World world(scene.bodies, *scene.physics);
+            Stepper world(scene.bodies, *scene.physics);
             const Needs& step = world.simulation().needs;
             SCOPED_TRACE(bodies);
             EXPECT_EQ(needs(scene, "friction"), step.friction);
@@ -305,7 +305,7 @@ TEST(PlanOfMotion, SaysWhatAStepNeeds) {
     for (const bool sleeps : {false, true}) {
         const Scene scene =
             load_text("[physics]\nsleeping = " + toml_text(sleeps) + "\n" + ball(0) + wall);
-        World world(scene.bodies, *scene.physics);
+        Stepper world(scene.bodies, *scene.physics);
         StepReport report;
         for (int step = 0; step < 480; ++step) report = world.step(1.0 / 240);
         EXPECT_GT(report.contacts, 0u);

@@ -57,13 +57,13 @@ void Motion::step(StageObserver* observer) {
     if (!change_) return;
     Simulation simulation = world_.simulation();
     change_(simulation.bodies, taken_);
-    world_ = World(std::move(simulation));
+    world_ = Stepper(std::move(simulation));
 }
 
 void Motion::start_anew() {
     Simulation simulation = make_simulation(world_.bodies(), world_.simulation().settings);
     simulation.memory = world_.memory();
-    world_ = World(std::move(simulation));
+    world_ = Stepper(std::move(simulation));
 }
 
 void move_bodies(Bodies& bodies, const Rotor& turn, const Vec4& shift) {

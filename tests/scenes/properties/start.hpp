@@ -6,7 +6,7 @@
 #include "core/dynamics/bodies/bodies.hpp"
 #include "core/dynamics/step/memory.hpp"
 #include "core/dynamics/step/settings.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/scenes/properties/small_scene.hpp"
 
 namespace tesserae::scenes::properties {
@@ -29,14 +29,14 @@ class Motion {
     /// @param observer   sees it, if there is one
     void step(StageObserver* observer = nullptr);
     const Bodies& bodies() const { return world_.bodies(); }
-    const World& world() const { return world_; }
+    const Stepper& world() const { return world_; }
     const StepReport& report() const { return report_; }  ///< of the last step
     double time_step() const { return step_; }            ///< [s]
     /// From what it has left goes on a new world.
     void start_anew();
 
   private:
-    World world_;
+    Stepper world_;
     double step_;
     int taken_ = 0;
     StepReport report_;

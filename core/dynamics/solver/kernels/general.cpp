@@ -85,7 +85,8 @@ void keep_hits(const ColouredStage& stage, std::uint32_t index, std::uint32_t po
     const Batch& batch = stage.step.coloured.general[index];
     const Eight& normal = stage.step.coloured.impulses.normal[batch.row + point];
     for (std::size_t k = 0; k < kLanes; ++k)
-        if (point < batch.points[k]) stage.step.hit[batch.contact[k] + point] = normal.lane[k] > 0;
+        if (point < batch.points[k])
+            stage.step.hit[batch.contact[k] + point] = stage.mass_unit * normal.lane[k];
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ void keep_round(const ColouredStage& stage, BatchRange batches) {
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
             const float normal = coloured.round_impulses.normal[i].lane[k];
             if (stage.cause == Cause::kImpact) {
-                stage.step.hit[batch.contact[k]] = normal > 0;
+                stage.step.hit[batch.contact[k]] = stage.mass_unit * normal;
                 continue;
             }
             ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];

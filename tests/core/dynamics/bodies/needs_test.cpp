@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 #include "tests/core/shape/oracle.hpp"
@@ -97,7 +97,7 @@ TEST(Needs, WhatIsLeftOutWouldChangeNothing) {
                          needs.turning || needs.internal_edges);
             Simulation with_all = start;
             with_all.needs = Needs{};
-            World decided(start, coloured_from), all(with_all, coloured_from);
+            Stepper decided(start, coloured_from), all(with_all, coloured_from);
             std::uint64_t contacts = 0;
             for (int i = 0; i < 200; ++i) {
                 contacts += decided.step(kStep).contacts;
@@ -123,7 +123,7 @@ TEST(Needs, NoContactTurnsASphereWithoutFriction) {
             if (id % 3 == 0) bodies.angular_velocity[id] = {1, -2, 0.5, 0.1 * id, 3, 1};
             if (id % 7 == 0) give_type(bodies, id, box_type({0.6, 0.5, 0.7, 0.6}, 100));
         }
-        World world(make_simulation(bodies, PhysicsSettings{}), coloured_from);
+        Stepper world(make_simulation(bodies, PhysicsSettings{}), coloured_from);
         run(world, 200);
         const Bodies& now = world.bodies();
         int boxes_turned = 0;
@@ -145,7 +145,7 @@ TEST(Needs, NoContactTurnsASphereWithoutFriction) {
 TEST(Needs, ABodyThatIsNoRotationIsNamedWhereNothingTurns) {
     Bodies bodies = smooth_heap(3);
     bodies.rotor[8].b.xz = std::numeric_limits<double>::quiet_NaN();
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     try {
         world.step(kStep);
         ADD_FAILURE() << "nothing thrown";

@@ -38,7 +38,7 @@ PhysicsSettings falling_settings() {
     return settings;
 }
 
-double mechanical_energy_of(const World& world) {
+double mechanical_energy_of(const Stepper& world) {
     return kinetic_energy(world.bodies()) +
            potential_energy(world.bodies(), world.simulation().settings.gravity);
 }
@@ -56,8 +56,8 @@ TEST(Weld, OfTwoHalvesMovesAsTheWhole) {
             add(halves, box_type({1, 0.8, 0.6, 1}, 1), r, velocity + velocity_at(turning, r),
                 turning, rotor);
         }
-        World one(whole, falling_settings());
-        World two(make_simulation(halves, falling_settings(),
+        Stepper one(whole, falling_settings());
+        Stepper two(make_simulation(halves, falling_settings(),
                                   {frame_joint(halves, 0, 1, Vec4::Zero(), kAllHeld)}),
                   coloured_from);
         for (int i = 0; i < 240; ++i) {
@@ -79,7 +79,7 @@ TEST(Weld, HoldsAShelf) {
     for (const ColouredFrom& coloured_from : kAllWays) {
         Bodies bodies;
         add(bodies, box_type({1, 0.2, 0.5, 0.5}, 3), {1, 0, 0, 0.4});
-        World world(make_simulation(bodies, falling_settings(),
+        Stepper world(make_simulation(bodies, falling_settings(),
                                     {frame_joint(bodies, kWorld, 0, Vec4::Zero(), kAllHeld)}),
                     coloured_from);
         for (int i = 0; i < 240; ++i) world.step(kStep);
@@ -104,7 +104,7 @@ TEST(Slider, FallsAlongItsAxis) {
         Joint joint = frame_joint(bodies, kWorld, 0, bodies.position[0], all_but({0}));
         auto& kind = std::get<FrameJoint>(joint.kind);
         kind.axes_a = kind.axes_a * slope, kind.axes_b = kind.axes_b * slope;
-        World world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
+        Stepper world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
         constexpr int kSteps = 240;
         for (int i = 0; i < kSteps; ++i) world.step(kStep);
         const Vec4 axis = rotate(slope, Vec4::UnitX());
@@ -121,7 +121,7 @@ TEST(Hinge, LetsAWheelSpinManyTimesRound) {
         Bodies bodies;
         add(bodies, box_type({1, 0.7, 0.3, 0.4}, 2), {0, 0, 0, 0}, Vec4::Zero(),
             {20, 0, 0, 0, 0, 0});
-        World world(make_simulation(bodies, falling_settings(),
+        Stepper world(make_simulation(bodies, falling_settings(),
                                     {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
                     coloured_from);
         for (int i = 0; i < 480; ++i) {
@@ -143,7 +143,7 @@ TEST(Hinge, SwingsAsAPendulum) {
         constexpr double kMass = 2, kArm = 0.5;
         Bodies bodies;
         add(bodies, box_type({1, 0.2, 0.3, 0.4}, kMass), {kArm, 0, 0, 0});
-        World world(make_simulation(bodies, falling_settings(),
+        Stepper world(make_simulation(bodies, falling_settings(),
                                     {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
                     coloured_from);
         const double inertia = kMass * (1 + 0.04) / 12 + kMass * kArm * kArm;
@@ -171,7 +171,7 @@ TEST(Hinge, StopsAtItsLimits) {
             add(bodies, box_type({1, 0.2, 0.3, 0.4}, kMass), {kArm, 0, 0, 0});
             Joint joint = frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}));
             joint.limits = {{kXY, low, 0.3}};
-            World world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
+            Stepper world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
             double least = 0;
             JointState state;
             for (int i = 0; i < 720; ++i) {
@@ -195,7 +195,7 @@ TEST(Swivel, KeepsItsAxis) {
         Bodies bodies;
         add(bodies, box_type({0.4, 1, 0.3, 0.6}, 2), {0, 0, 0, 0}, Vec4::Zero(),
             {0, 0, 0, 3, -2, 4});
-        World world(
+        Stepper world(
             make_simulation(bodies, without_gravity(),
                             {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({7, 8, 9}))}),
             coloured_from);
@@ -229,7 +229,7 @@ TEST(FrameJoint, KeepsMomentum) {
                 if (k % 3 == 1) joint.drives.push_back({k, 0.1, 0, 30, 1});
                 if (k % 3 == 2) joint.drives.push_back({k, 0, 2, 0, 0, true, 5});
             }
-            World world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
+            Stepper world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
             const Vec4 momentum = total_momentum(world.bodies());
             const Bivector turning = total_angular_momentum(world.bodies());
             for (int k = 0; k < 120; ++k) world.step(kStep);
@@ -248,7 +248,7 @@ TEST(Motor, TurnsAWheelUpToItsSpeed) {
         add(bodies, box_type({1, 1, 0.3, 0.3}, 2), Vec4::Zero());
         Joint joint = frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}));
         joint.drives = {{kXY, 0, kSpeed, 0, 0, true, kMost}};
-        World world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
+        Stepper world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
         const double inertia = 2 * 2 / 12.0, until = kSpeed * inertia / kMost;
         double work = 0;
         for (int i = 1; i <= 960; ++i) {
@@ -274,7 +274,7 @@ TEST(Motor, StopsAtALimit) {
                 Joint joint = frame_joint(bodies, kWorld, 0, start, all_but({1}));
                 joint.limits = {{1, -0.3, 0.5}};
                 joint.drives = {{1, 0, speed, 0, 0, true, most}};
-                World world(make_simulation(bodies, PhysicsSettings{}, {joint}), way);
+                Stepper world(make_simulation(bodies, PhysicsSettings{}, {joint}), way);
                 run(world, 480);
                 EXPECT_NEAR(world.bodies().position[0][1], speed > 0 ? 2.5 : 1.7, 1e-4);
                 EXPECT_LT(fastest_of(world), 1e-4);
@@ -290,7 +290,7 @@ TEST(Motor, HoldsAnAngleAgainstGravity) {
     const double mass = mass_along(driven, kXY, bodies), w = 2 * pi * 10;
     driven.drives = {{kXY, 0, 0, mass * w * w, 2 * mass * w}};
     const Joint welded = frame_joint(bodies, 0, 1, Vec4(1, 0, 0, 0), kAllHeld);
-    World world(make_simulation(bodies, falling_settings(), {driven, welded}));
+    Stepper world(make_simulation(bodies, falling_settings(), {driven, welded}));
     for (int i = 0; i < 960; ++i) world.step(kStep);
     const double moment = 10 * (2 * 0.5 + 1 * 1.5), sag = moment / (mass * w * w);
     const JointState state = state_of(driven, world.bodies(), world.joint_impulses()[0]);
@@ -306,7 +306,7 @@ TEST(Joint, BreaksAtItsForce) {
             add(bodies, sphere_type(0.3, 2), {0, 2, 0, 0});
             Joint joint = frame_joint(bodies, kWorld, 0, bodies.position[0], kAllHeld);
             joint.break_force = 20 / part;
-            World world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
+            Stepper world(make_simulation(bodies, falling_settings(), {joint}), coloured_from);
             for (int i = 0; i < 240; ++i) world.step(kStep);
             const bool breaks = part > 1;
             EXPECT_EQ(world.memory().broken, std::vector<std::uint8_t>(breaks ? 1 : 0, 1));
@@ -321,7 +321,7 @@ TEST(Joint, BreaksAtItsTorque) {
         add(bodies, box_type({1, 0.2, 0.2, 0.2}, 2), {0.5, 2, 0, 0});
         Joint joint = frame_joint(bodies, kWorld, 0, {0, 2, 0, 0}, kAllHeld);
         joint.break_torque = 10 / part;
-        World world(make_simulation(bodies, falling_settings(), {joint}));
+        Stepper world(make_simulation(bodies, falling_settings(), {joint}));
         for (int i = 0; i < 240; ++i) world.step(kStep);
         EXPECT_EQ(world.memory().broken.empty(), part < 1) << part;
     }
@@ -335,9 +335,9 @@ TEST(Joint, StaysBrokenInAWorldFromItsMemory) {
     Joint strong = frame_joint(bodies, kWorld, 0, bodies.position[0], kAllHeld);
     Joint weak = frame_joint(bodies, 0, 1, bodies.position[1], kAllHeld);
     weak.break_force = 19;
-    World world(make_simulation(bodies, falling_settings(), {strong, weak}));
+    Stepper world(make_simulation(bodies, falling_settings(), {strong, weak}));
     run(world, 10);
-    World again(make_simulation(world.bodies(), falling_settings(), {strong, weak}));
+    Stepper again(make_simulation(world.bodies(), falling_settings(), {strong, weak}));
     again.memory() = world.memory();
     run(world, 50), run(again, 50);
     EXPECT_EQ(world.memory().broken, (std::vector<std::uint8_t>{0, 1}));

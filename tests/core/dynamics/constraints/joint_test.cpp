@@ -30,12 +30,12 @@ Vec4 error_of(const Bodies& bodies, const Joint& joint) {
     return anchor(joint.b, kind.on_b) - anchor(joint.a, kind.on_a);
 }
 
-double energy_of(const World& world) {
+double energy_of(const Stepper& world) {
     return kinetic_energy(world.bodies()) +
            potential_energy(world.bodies(), world.simulation().settings.gravity);
 }
 
-double largest_error(const World& world) {
+double largest_error(const Stepper& world) {
     double largest = 0;
     for (const Joint& joint : world.simulation().joints.all)
         largest = std::max(largest, error_of(world.bodies(), joint).norm());
@@ -146,7 +146,7 @@ PhysicsSettings settings_of() {
 }
 
 double error_after(double seconds, double dt, Hanging of, const ColouredFrom& coloured_from) {
-    World world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
+    Stepper world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
     const int steps = static_cast<int>(std::lround(seconds / dt));
     for (int i = 0; i < steps; ++i) world.step(dt);
     for (int i = 0; i < 4 * steps; ++i) of.top.advance(dt / 4);
@@ -173,7 +173,7 @@ TEST(PointJoint, KeepsItsEnergy) {
     for (const ColouredFrom& coloured_from : kAllWays) {
         std::mt19937_64 random(2);
         const Hanging of = hanging(random, false);
-        World world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
+        Stepper world(make_simulation(of.bodies, settings_of(), of.joints), coloured_from);
         const auto energy = [&] { return energy_of(world); };
         world.step(kStep);
         const double first = energy();
@@ -200,7 +200,7 @@ TEST(PointJoint, KeepsMomentum) {
                 {p[0], p[1], p[2], p[3], q[0], q[1]});
             add(bodies, box_type({0.4, 0.4, 0.5, 0.3}, 1), on_a - on_b, random_vector(random, 1),
                 {q[2], q[3], p[1], p[0], q[1], p[3]});
-            World world(make_simulation(bodies, without_gravity(), {point_joint(0, on_a, 1, on_b)}),
+            Stepper world(make_simulation(bodies, without_gravity(), {point_joint(0, on_a, 1, on_b)}),
                         coloured_from);
             const Vec4 momentum = total_momentum(world.bodies());
             const Bivector turning = total_angular_momentum(world.bodies());
@@ -219,7 +219,7 @@ TEST(Chain, HangsStill) {
         const Chain chain = chain_of(12, -Vec4::UnitY(), 3);
         PhysicsSettings settings = settings_of();
         settings.sleeping = true;
-        World world(make_simulation(chain.bodies, settings, chain.joints), coloured_from);
+        Stepper world(make_simulation(chain.bodies, settings, chain.joints), coloured_from);
         StepReport report;
         for (int i = 0; i < 480; ++i) report = world.step(kStep);
         EXPECT_LT(largest_error(world), 1e-6) << coloured_from.held;
@@ -239,7 +239,7 @@ TEST(Chain, WakesAsOne) {
     PhysicsSettings settings = settings_of();
     settings.sleeping = true;
     add(chain.bodies, sphere_type(0.2), {-16, -3.5, 0, 0}, {8, 10, 0, 0});
-    World world(make_simulation(chain.bodies, settings, chain.joints));
+    Stepper world(make_simulation(chain.bodies, settings, chain.joints));
     StepReport report;
     for (int i = 0; i < 240; ++i) report = world.step(kStep);
     EXPECT_EQ(report.asleep, 5u);
@@ -259,11 +259,11 @@ TEST(Chain, GoesOnFromItsMemory) {
         for (const int substeps : {1, 3}) {
             PhysicsSettings settings = settings_of();
             settings.substeps = substeps;
-            World world(make_simulation(chain.bodies, settings, chain.joints), coloured_from);
+            Stepper world(make_simulation(chain.bodies, settings, chain.joints), coloured_from);
             run(world, 30);
-            World again(make_simulation(world.bodies(), settings, chain.joints), coloured_from);
+            Stepper again(make_simulation(world.bodies(), settings, chain.joints), coloured_from);
             again.memory() = world.memory();
-            World without(make_simulation(world.bodies(), settings, chain.joints), coloured_from);
+            Stepper without(make_simulation(world.bodies(), settings, chain.joints), coloured_from);
             run(world, 20), run(again, 20), run(without, 20);
             EXPECT_TRUE(same_bits(world.bodies(), again.bodies()));
             EXPECT_EQ(world.memory().joint_impulses, again.memory().joint_impulses);
@@ -280,7 +280,7 @@ TEST(Joint, LeavesContactsOfItsBodiesOut) {
         add(bodies, sphere_type(0.5), {0.5, 0, 0, 0});
         Joint joint = point_joint(0, {0.25, 0, 0, 0}, 1, {-0.25, 0, 0, 0});
         joint.collide = collide;
-        World world(make_simulation(bodies, without_gravity(), {joint}));
+        Stepper world(make_simulation(bodies, without_gravity(), {joint}));
         EXPECT_EQ(world.step(kStep).contacts, collide ? 1u : 0u);
     }
 }
@@ -298,7 +298,7 @@ TEST(Joint, IsNotTornWhereABodyIsStopped) {
             const double x = kFront - kRadius - ahead;  // it touches in the first half of a step
             add(bodies, sphere_type(kRadius), {x, 0, 0, 0}, {kSpeed, 0, 0, 0});
             add(bodies, sphere_type(kRadius), {x, 0.6, 0, 0}, {kSpeed, 0, 0, 0});
-            World world(make_simulation(bodies, without_gravity(),
+            Stepper world(make_simulation(bodies, without_gravity(),
                                         {point_joint(1, {0, 0.3, 0, 0}, 2, {0, -0.3, 0, 0})}),
                         coloured_from);
             double torn = 0;
@@ -322,7 +322,7 @@ TEST(Joint, KeepsItsRowsVelocitiesInAnImpact) {
             add(bodies, sphere_type(0.3, 1, 0, 1), {0, y, 0, 0}, velocity_at(spin, {0, y, 0, 0}),
                 spin);
         add(bodies, sphere_type(0.3, 2, 0, 1), {-2.2, 0.5, 0.1, -0.1}, {12, 0, 0, 0});
-        World world(make_simulation(bodies, without_gravity(),
+        Stepper world(make_simulation(bodies, without_gravity(),
                                     {point_joint(0, {0, 0.5, 0, 0}, 1, {0, -0.5, 0, 0})}),
                     coloured_from);
         StageCopy before(Stage::kSolveImpacts), after(Stage::kIntegrateVelocities);
@@ -333,7 +333,7 @@ TEST(Joint, KeepsItsRowsVelocitiesInAnImpact) {
         double fastest = 0;
         int hits = 0;
         for (int i = 0; i < 60; ++i) {
-            World again(
+            Stepper again(
                 make_simulation(world.bodies(), without_gravity(), world.simulation().joints.all),
                 coloured_from);
             again.memory() = world.memory();
@@ -357,7 +357,7 @@ TEST(Joint, HandsAnElasticImpactOn) {
         Bodies bodies;
         for (const double y : {-0.5, 0.5}) add(bodies, sphere_type(0.3, 1, 0, 1), {0, y, 0, 0});
         add(bodies, sphere_type(0.3, 2, 0, 1), {-1.5, 0.5, 0.1, -0.1}, {6, 0, 0, 0});
-        World world(make_simulation(bodies, without_gravity(),
+        Stepper world(make_simulation(bodies, without_gravity(),
                                     {point_joint(0, 0.5 * Vec4::UnitY(), 1, -0.5 * Vec4::UnitY())}),
                     coloured_from);
         const double before = energy_of(world);

@@ -37,7 +37,7 @@ TEST(LineJoint, PullsWhatWhirlsByTheClosedForm) {
         Bodies bodies;
         const Vec4 out = Vec4(1, 2, -1, 3).normalized(), along = Vec4(3, 0, 0, -1).normalized();
         add(bodies, sphere_type(0.2, kMass), kRadius * out, kSpeed * along);
-        World world(make_simulation(bodies, without_gravity(),
+        Stepper world(make_simulation(bodies, without_gravity(),
                                     {to_world(0, LineJoint{kCentre, kCentre, kRadius})}),
                     coloured_from);
         constexpr int kSteps = 240;
@@ -64,9 +64,9 @@ TEST(LineJoint, RopesOnlyPull) {
         Joint rope = to_world(0, LineJoint{kCentre, kCentre, 2});
         rope.held = 0;
         rope.limits = {{0, -kNoLimit, 0}};
-        World world(make_simulation(bodies, falling(), {rope}), coloured_from);
+        Stepper world(make_simulation(bodies, falling(), {rope}), coloured_from);
         Bodies free = bodies;
-        World alone(free, falling());
+        Stepper alone(free, falling());
         double farthest = 0;
         bool was_taut = false;
         for (int i = 0; i < 2400; ++i) {
@@ -96,7 +96,7 @@ TEST(Spring, SwingsAtItsFrequencyAndKeepsItsEnergy) {
             const bool is_line = frequency < 10;
             Joint joint = is_line ? spring(LineJoint{kCentre, kCentre, 1}, 0, stiffness)
                                   : spring(PointJoint{Vec4::UnitY(), kCentre}, 1, stiffness);
-            World world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
+            Stepper world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
             // The period of the implicit midpoint rule: tan(w' h / 2) = w h / 2.
             const double turn = 2 * std::atan(0.5 * w * kStep);
             const double float_error = coloured_from.held == 1 ? 1e-4 : 1e-9;
@@ -120,7 +120,7 @@ TEST(Spring, IsDampedAsTheClosedFormSays) {
         add(bodies, sphere_type(0.1, kMass), {kAway, 0, 0, 0});
         const double stiffness = kMass * kSpring * kSpring, damping = 2 * part * kSpring * kMass;
         Joint joint = spring(PointJoint{}, 0, stiffness, damping);
-        World world(make_simulation(bodies, without_gravity(), {joint}));
+        Stepper world(make_simulation(bodies, without_gravity(), {joint}));
         double x = kAway, v = 0;
         for (int i = 0; i < 480; ++i) {
             world.step(kStep);
@@ -148,7 +148,7 @@ TEST(Spring, OfNoLengthGoesRoundClosedEllipses) {
         joint.held = 0;
         for (int axis = 0; axis < 4; ++axis)
             joint.drives.push_back({axis, 0, 0, kMass * kSpring * kSpring});
-        World world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
+        Stepper world(make_simulation(bodies, without_gravity(), {joint}), coloured_from);
         for (int i = 1; i <= 240 * 5; ++i) {
             world.step(kStep);
             const double angle = kSpring * kStep * i;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 
@@ -79,7 +79,7 @@ TEST(RollingFriction, SlowsABallByThreeQuartersOfItsArmOverTheRadius) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         const BodyId id = add_ball(bodies, ball);
-        World world(make_simulation(bodies, settings), coloured ? 1 : kNoneColoured);
+        Stepper world(make_simulation(bodies, settings), coloured ? 1 : kNoneColoured);
         const double stops = ball.speed / ball.deceleration();
         const int steps = std::min(40 + round, static_cast<int>(stops / dt) - 1);
         ASSERT_GT(steps, 0);
@@ -98,7 +98,7 @@ TEST(RollingFriction, StopsABallAndLeavesItAtRest) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         const BodyId id = add_ball(bodies, ball);
-        World world(make_simulation(bodies, both_settings()[round % 2]),
+        Stepper world(make_simulation(bodies, both_settings()[round % 2]),
                     round / 2 % 2 ? 1 : kNoneColoured);
         const double a = ball.deceleration(), time = ball.speed / a;
         run(world, static_cast<int>(std::ceil(1.1 * time / kStep)));
@@ -126,7 +126,7 @@ TEST(RollingFriction, SlowsManyBallsOfOneLargeIsland) {
             add_ball(bodies, ball, 8 * Vec4(i % 11 - 5, 0, i / 11 % 10 - 5, i / 110 - 5));
         }
         StageCopy copy(Stage::kFinishStep);
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         run(world, 9);
         world.observe(&copy);
         run(world, 1);
@@ -153,7 +153,7 @@ TEST(RollingFriction, SlowsABallThatTwistsInPlace) {
         ball.speed = 0;
         const BodyId id = add_ball(bodies, ball);
         bodies.angular_velocity[id] = (first / norm(spin)) * spin;
-        World world(make_simulation(bodies, both_settings()[round % 2]),
+        Stepper world(make_simulation(bodies, both_settings()[round % 2]),
                     coloured ? 1 : kNoneColoured);
         run(world, 10 + round);
         const double now = std::max(0.0, first - a * (10 + round) * kStep);
@@ -165,7 +165,7 @@ TEST(RollingFriction, SlowsABallThatTwistsInPlace) {
 }
 
 /// A ball on a slope with that part of the steepest slope on which it rests.
-World ball_on_slope(double part, const PhysicsSettings& settings, std::uint32_t coloured_from) {
+Stepper ball_on_slope(double part, const PhysicsSettings& settings, std::uint32_t coloured_from) {
     const double angle = std::atan(0.1 * part);
     Bodies bodies;
     add(bodies, rolling_type(plane_type(Vec4::UnitY(), 0), 0.05, 0.5));
@@ -173,7 +173,7 @@ World ball_on_slope(double part, const PhysicsSettings& settings, std::uint32_t 
     PhysicsSettings tilted = settings;
     tilted.gravity =
         kGravity * Vec4(std::sin(angle) * 0.6, -std::cos(angle), 0, std::sin(angle) * 0.8);
-    return World(make_simulation(bodies, tilted), coloured_from);
+    return Stepper(make_simulation(bodies, tilted), coloured_from);
 }
 
 TEST(RollingFriction, HoldsABallOnASlopeUpToTheArmOverTheRadius) {
@@ -181,13 +181,13 @@ TEST(RollingFriction, HoldsABallOnASlopeUpToTheArmOverTheRadius) {
     for (const PhysicsSettings& settings : both_settings())
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             for (const double part : {0.5, 0.9, 0.99}) {
-                World world = ball_on_slope(part, settings, coloured_from);
+                Stepper world = ball_on_slope(part, settings, coloured_from);
                 run(world, 2400);
                 // Ten seconds; unless each step starts from the last one's impulses it creeps.
                 EXPECT_LT(world.bodies().position[1].dot(down), 5e-5) << part;
             }
             for (const double part : {1.05, 1.5}) {
-                World world = ball_on_slope(part, settings, coloured_from);
+                Stepper world = ball_on_slope(part, settings, coloured_from);
                 run(world, 480);
                 const double angle = std::atan(0.1 * part),
                              way = 0.5 * 0.75 * kGravity *
@@ -204,7 +204,7 @@ TEST(RollingFriction, IsNothingInTheAirAndWithoutFriction) {
         add(bodies, rolling_type(plane_type(Vec4::UnitY(), 0), rolling, floor_friction));
         add(bodies, rolling_type(sphere_type(0.5, 1), rolling, ball_friction), {0, height, 0, 0},
             {1, 0, 2, 0}, {1, 2, 3, -1, 4, 0.5});
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 60);
         return world.bodies();
     };
@@ -222,7 +222,7 @@ TEST(RollingFriction, WithoutBoundsKeepsABallFromTurning) {
                 Bodies bodies;
                 add(bodies, rolling_type(plane_type(Vec4::UnitY(), 0), 0));
                 add(bodies, rolling_type(sphere_type(0.5, 2), most), {0, 0.5, 0, 0}, {3, 0, 0, 4});
-                World world(make_simulation(bodies, settings), coloured_from);
+                Stepper world(make_simulation(bodies, settings), coloured_from);
                 run(world, 120);
                 const Vec4 v = world.bodies().velocity[1];
                 EXPECT_LT((v - 0.5 * Vec4(3, 0, 0, 4)).norm(), 1e-5);  // 5 - 0.5 g t, of floats
@@ -244,7 +244,7 @@ TEST(RollingFriction, TakesACapsulesEnergyByTheAngleThatItRolls) {
                 add(bodies, rolling_type(capsule_type(radius, 1, mass), rolling_friction),
                     radius * Vec4::UnitY(), speed * t, (speed / radius) * wedge(Vec4::UnitY(), t),
                     lies);
-            World world(make_simulation(bodies, settings), coloured_from);
+            Stepper world(make_simulation(bodies, settings), coloured_from);
             double last = kinetic_energy(bodies);
             const double way = last / (rolling_friction * mass * kGravity) * radius;
             for (int i = 0; i < 2400; ++i) {
@@ -271,7 +271,7 @@ TEST(RollingFriction, StaysWithinItsPartOfEveryNormalImpulse) {
     for (const PhysicsSettings& settings : both_settings())
         for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
             StageCopy copy(Stage::kFinishStep);
-            World world(make_simulation(mixed_heap_that_rolls(), settings), coloured_from);
+            Stepper world(make_simulation(mixed_heap_that_rolls(), settings), coloured_from);
             run(world, 100);
             world.observe(&copy);
             int pushed = 0, at_limit = 0, below = 0;
@@ -322,7 +322,7 @@ TEST(RollingFriction, NeverAddsEnergy) {
             const Bivector turn = {a[0], a[1], a[2], b[0], b[1], b[2]};
             add(bodies, type, place, velocity, turn, exp(turn));
         }
-        World world(make_simulation(bodies, settings), round / 2 % 2 ? 1 : kNoneColoured);
+        Stepper world(make_simulation(bodies, settings), round / 2 % 2 ? 1 : kNoneColoured);
         const double first = kinetic_energy(bodies);
         double before = first;
         for (int i = 0; i < 240; ++i) {
@@ -347,7 +347,7 @@ TEST(RollingFriction, KeepsAHeapFromFlowing) {
         for (int i = 0; i < 8; ++i)
             add(bodies, ball, {i % 2 - 0.5, 0.5, i / 2 % 2 - 0.5, i / 4 - 0.5});
         add(bodies, ball, {0.02, 1.0, 0.01, -0.01});
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         run(world, 720);
         double spread = 0;
         for (BodyId id = 1; id < 9; ++id)
@@ -374,7 +374,7 @@ TEST(Rolling, OverLoosePlanksLosesNoSpeed) {
         Bivector rolling;
         rolling.xy = -kSpeed / kRadius;
         const BodyId id = add(bodies, ball, {0, kRadius, 0, 0}, {kSpeed, 0, 0, 0}, rolling);
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         while (world.bodies().position[id][0] < 1.3 && world.memory().time < 3) world.step(kStep);
         // A joint of d lets it down by d^2 / 8R: of its energy so much is lost for each.
         EXPECT_GT(world.bodies().velocity[id][0], 0.99 * kSpeed) << times;

@@ -194,9 +194,9 @@ void expect_clearances_change_no_motion(int fallen) {
     for (const int substeps : {1, 3}) {
         PhysicsSettings settings;
         settings.substeps = substeps;
-        World world(falling_heap(fallen), settings);
+        Stepper world(falling_heap(fallen), settings);
         for (int i = 0; i < 240; ++i) {
-            World without(world.bodies(), settings);
+            Stepper without(world.bodies(), settings);
             without.memory() = world.memory();
             world.step(kStep);
             without.step(kStep);

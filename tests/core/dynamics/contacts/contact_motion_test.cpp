@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -16,17 +16,17 @@ constexpr double kRadius = 0.5;
 constexpr double kMotionRounding = 1e-11;
 
 /// A sphere (body 1) on or above the plane y = 0 (body 0).
-World sphere_on_plane(double friction, double restitution, const Vec4& gravity, double gap,
+Stepper sphere_on_plane(double friction, double restitution, const Vec4& gravity, double gap,
                       const Vec4& velocity) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, friction, restitution));
     add(bodies, sphere_type(kRadius, 2, friction, restitution), {0, kRadius + gap, 0, 0}, velocity);
     PhysicsSettings settings;
     settings.gravity = gravity;
-    return World(bodies, settings);
+    return Stepper(bodies, settings);
 }
 
-void run_for(World& world, double time, int steps_per_second) {
+void run_for(Stepper& world, double time, int steps_per_second) {
     const int steps = static_cast<int>(std::lround(time * steps_per_second));
     for (int i = 0; i < steps; ++i) world.step(1.0 / steps_per_second);
 }
@@ -36,7 +36,7 @@ TEST(Sliding, TurnsIntoRollingAtThreeQuartersOfTheSpeed) {
     // mu g (1 + 3) a second: it ends at t = v0/(4 mu g) = 0.3 s.
     const double v0 = 3.6, mu = 0.3;
     const Vec4 direction{0, 0, 0.6, 0.8};
-    World world = sphere_on_plane(mu, 0, kDown, 0, v0 * direction);
+    Stepper world = sphere_on_plane(mu, 0, kDown, 0, v0 * direction);
     run_for(world, 0.25, 240);
     EXPECT_LT((world.bodies().velocity[1] - (v0 - mu * 10 * 0.25) * direction).norm(),
               kMotionRounding);
@@ -51,7 +51,7 @@ TEST(Sliding, CoversTheRightDistanceToSecondOrder) {
     const double t = v0 / (4 * mu * 10);
     const double exact = v0 * t - 0.5 * mu * 10 * t * t + 0.75 * v0 * (1 - t);
     for (int steps_per_second : {60, 240, 960}) {
-        World world = sphere_on_plane(mu, 0, kDown, 0, {v0, 0, 0, 0});
+        Stepper world = sphere_on_plane(mu, 0, kDown, 0, {v0, 0, 0, 0});
         run_for(world, 1, steps_per_second);
         // Exact on either side of the change; in its step the acceleration of 3 m/s^2 acts for a
         // wrong time of at most h while the speed is right at both ends.
@@ -76,7 +76,7 @@ TEST(Sliding, BrakesABoxOfAnyYawAgainstItsVelocity) {
         settings.gravity = kDown;
         settings.iterations = 300;  // until nothing changes
         settings.tolerance = 0;
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         run_for(world, t, 240);
         const double travel = v0 * t - 0.5 * mu * 10 * t * t;
         const Vec4 end = Vec4{0, 0.1, 0, 0} + travel * direction;
@@ -90,7 +90,7 @@ TEST(Incline, LetsASphereRollOrSlipAtTheExactAcceleration) {
         for (double mu : {0.05, 0.2, 0.6}) {
             const double angle = degrees * pi / 180;
             const Vec4 gravity{10 * std::sin(angle), -10 * std::cos(angle), 0, 0};
-            World world = sphere_on_plane(mu, 0, gravity, 0, Vec4::Zero());
+            Stepper world = sphere_on_plane(mu, 0, gravity, 0, Vec4::Zero());
             run_for(world, 1, 240);
             const bool rolls = mu >= std::tan(angle) / 4;
             const double a =
@@ -102,7 +102,7 @@ TEST(Incline, LetsASphereRollOrSlipAtTheExactAcceleration) {
 }
 
 /// The greatest heights between bounces, at the times of the steps.
-std::vector<double> heights(World& world, int steps_per_second, std::size_t count) {
+std::vector<double> heights(Stepper& world, int steps_per_second, std::size_t count) {
     std::vector<double> tops;
     double top = world.bodies().position[1][1] - kRadius;  // it starts at rest
     bool rising = true;
@@ -121,7 +121,7 @@ std::vector<double> heights(World& world, int steps_per_second, std::size_t coun
 TEST(Bounce, HeightsFallAsTheSquareOfRestitution) {
     for (int steps_per_second : {60, 240, 1000})
         for (double e : {1.0, 0.8, 0.5}) {
-            World world = sphere_on_plane(0, e, kDown, 1, Vec4::Zero());
+            Stepper world = sphere_on_plane(0, e, kDown, 1, Vec4::Zero());
             const auto tops = heights(world, steps_per_second, 4);
             ASSERT_EQ(tops.size(), 4u);
             // The true top lies within half a step of a step: it is at most g (h/2)^2 / 2 higher.
@@ -135,7 +135,7 @@ TEST(Bounce, HeightsFallAsTheSquareOfRestitution) {
 }
 
 TEST(Bounce, KeepsEnergyExactlyWhenItIsElastic) {
-    World world = sphere_on_plane(0, 1, kDown, 1, {0.3, 0, 0, 0});
+    Stepper world = sphere_on_plane(0, 1, kDown, 1, {0.3, 0, 0, 0});
     const auto energy = [&] {
         return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
     };
@@ -151,7 +151,7 @@ TEST(Bounce, ComesLateByAtMostAStep) {
     const double e = 0.8, t1 = std::sqrt(0.2), v = std::sqrt(20.0), t = 0.8;
     const double exact = e * v * (t - t1) - 5 * (t - t1) * (t - t1);
     for (int steps_per_second : {60, 240, 960, 3840}) {
-        World world = sphere_on_plane(0, e, kDown, 1, Vec4::Zero());
+        Stepper world = sphere_on_plane(0, e, kDown, 1, Vec4::Zero());
         run_for(world, t, steps_per_second);
         // The bounce is put into the middle of the step before the surface would be passed: up to
         // h too early, 1.5 h with the half step. Bodies that should be falling at v rise at e v.
@@ -161,7 +161,7 @@ TEST(Bounce, ComesLateByAtMostAStep) {
 }
 
 TEST(Bounce, WithoutRestitutionComesToRestOnTheSurface) {
-    World world = sphere_on_plane(0.5, 0, kDown, 1, Vec4::Zero());
+    Stepper world = sphere_on_plane(0.5, 0, kDown, 1, Vec4::Zero());
     run_for(world, 1, 240);
     for (int i = 0; i < 100; ++i) {
         const StepReport report = world.step(1.0 / 240);
@@ -180,7 +180,7 @@ TEST(Collision, HeadOnOfEqualSpheresSwapsTheirVelocities) {
     add(bodies, ball, 2 * n, -1.25 * n);
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     run_for(world, 2, 240);
     EXPECT_LT((world.bodies().velocity[0] + 1.25 * n).norm(), kMotionRounding);
     EXPECT_LT((world.bodies().velocity[1] - 3 * n).norm(), kMotionRounding);
@@ -196,7 +196,7 @@ TEST(Collision, OfFastSpheresDoesNotTunnel) {
     add(bodies, ball, {0, 50, 0, 0});
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     for (int i = 0; i < 24; ++i) {
         EXPECT_LT(world.step(1.0 / 240).penetration, 1e-9);  // overlaps are rounding
     }
@@ -210,7 +210,7 @@ TEST(Overlap, OfCoincidentSpheresIsTakenApart) {
     for (int i = 0; i < 2; ++i) add(bodies, sphere_type(kRadius), {1, 2, 3, 4});
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     run_for(world, 1, 240);
     const Bodies& now = world.bodies();
     const double distance = (now.position[1] - now.position[0]).norm();

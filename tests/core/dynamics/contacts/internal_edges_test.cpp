@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 // Bodies that go over floors made of several bodies.
@@ -182,7 +182,7 @@ Difference difference(const Ride& ride, Floor floor, PhysicsSettings settings) {
     settings.gravity = turn * kDown;
     const auto [alone, body_alone] = start_of(ride, Floor::kPlane);
     const auto [tiled, body] = start_of(ride, floor);
-    World on_plane(alone, settings), on_tiles(tiled, settings);
+    Stepper on_plane(alone, settings), on_tiles(tiled, settings);
     Difference most;
     for (double t = 0; t * ride.speed < ride.distance(); t += kStep) {
         on_plane.step(kStep);
@@ -315,7 +315,7 @@ TEST(InternalEdges, AStepOfAMillimetreIsNone) {
             add_stairs(bodies, side, 2, 1e-3);
             const BodyId body = add(bodies, type, {edge - reach - 0.4 * side, 0.5 * size, 0, 0},
                                     {speed, 0, 0, 0}, {}, rotor);
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             double farthest = -kMiss;
             for (double t = 0; t < 0.6 * side / speed; t += kStep) {
                 world.step(kStep);
@@ -354,7 +354,7 @@ TEST(InternalEdgesSlow, OfAWallOnAFloorAreNone) {
                                     {speed, 0, 0, 0}, {}, rotor);
             PhysicsSettings downward = settings;
             downward.gravity = kDown;
-            World world(bodies, downward);
+            Stepper world(bodies, downward);
             for (double t = 0; t * speed < 2 * side; t += kStep) world.step(kStep);
             const Vec4 v = world.bodies().velocity[body];
             EXPECT_LT(std::abs(v[0] - speed), 1e-6 * speed) << seed;
@@ -388,7 +388,7 @@ void expect_contacts_in_corners(std::uint64_t seeds) {
             const Vec4 towards{draw.number(-3, 0), -1, draw.number(-3, 0), 0};
             const BodyId body = add(bodies, type, {1.2 * size, 1.2 * size, 1.2 * size, 0}, towards,
                                     {}, draw.turn());
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             const auto energy = [&] {
                 return kinetic_energy(world.bodies()) - kDown.dot(world.bodies().position[body]);
             };
@@ -448,7 +448,7 @@ TEST(InternalEdges, BoxesThatTouchAtEdgesRest) {
         ASSERT_GE(bodies.size(), 28u);  // three each way, and the plane
         PhysicsSettings settings;
         settings.gravity = turn * kDown;
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         run(world, 480);
         for (BodyId id = 1; id < bodies.size(); ++id)
             // Nothing takes back what a float's rounding moves aside where there is no friction.

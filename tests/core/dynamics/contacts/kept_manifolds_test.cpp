@@ -6,7 +6,7 @@
 #include "core/dynamics/contacts/edge_judge.hpp"
 #include "core/dynamics/contacts/find_contacts.hpp"
 #include "core/dynamics/step/step.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 
@@ -207,14 +207,14 @@ TEST(KeptContacts, FollowFromWhereTheyWereFound) {
     for (const int substeps : {1, 2}) {
         PhysicsSettings settings;
         settings.substeps = substeps;
-        World world(wall(5, 4), settings);
+        Stepper world(wall(5, 4), settings);
         run(world, 40);
         std::size_t points = 0;
         for (const KeptManifolds& list : world.memory().kept)
             for (const auto& manifold : list) points += manifold->count;
         EXPECT_GT(points, 200u);
 
-        World again(world.bodies(), settings);
+        Stepper again(world.bodies(), settings);
         again.memory() = world.memory();
         again.memory().kept.clear();
         again.memory().kept.resize(3);  // lists may be shared out in any way
@@ -230,7 +230,7 @@ TEST(KeptContacts, FollowFromWhereTheyWereFound) {
         EXPECT_TRUE(same_bits(world.bodies(), again.bodies()));
         EXPECT_TRUE(same_values(world.memory(), again.memory()));
 
-        World without(world.bodies(), settings);
+        Stepper without(world.bodies(), settings);
         without.memory() = world.memory();
         without.memory().kept.clear();
         run(world, 40);
@@ -242,9 +242,9 @@ TEST(KeptContacts, FollowFromWhereTheyWereFound) {
 /// Ranges of pairs find what was kept, however it is shared out: here in lists of 0 to 5, of 10^3
 /// pairs and more ranges than one.
 TEST(KeptContacts, AreFoundInManyLists) {
-    World world(wall(25, 24), {});
+    Stepper world(wall(25, 24), {});
     run(world, 5);
-    World again(world.bodies(), {});
+    Stepper again(world.bodies(), {});
     again.memory() = world.memory();
     again.memory().kept.clear();
     std::size_t lists = 0, manifolds = 0;
@@ -283,7 +283,7 @@ TEST(Margins, AreThoseOfWhatMayBeStopped) {
 
 /// Twenty rows high, half a metre thick: it swayed by 10 mm/s for many seconds.
 TEST(Wall, ComesToRestAtTheDefaults) {
-    World world(wall(20, 10), PhysicsSettings{});
+    Stepper world(wall(20, 10), PhysicsSettings{});
     StepReport report;
     for (int i = 0; i < 480; ++i) report = world.step(1.0 / 240);
     double sum = 0;

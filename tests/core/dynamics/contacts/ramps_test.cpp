@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 // Bodies that go from a ramp onto a floor or back: concave internal edges of boxes that do not
@@ -78,9 +78,9 @@ Bodies scene_of(const Slide& slide, bool of_planes) {
     return bodies;
 }
 
-World world_of(const Slide& slide, bool of_planes, PhysicsSettings settings) {
+Stepper world_of(const Slide& slide, bool of_planes, PhysicsSettings settings) {
     settings.gravity = to_matrix(slide.frame) * kDown;
-    return World(scene_of(slide, of_planes), settings);
+    return Stepper(scene_of(slide, of_planes), settings);
 }
 
 void expect_ramps_as_planes(std::uint64_t seeds) {
@@ -88,8 +88,8 @@ void expect_ramps_as_planes(std::uint64_t seeds) {
     // speed.
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         const Slide slide = random_slide(seed);
-        World on_planes = world_of(slide, true, {});
-        World on_boxes = world_of(slide, false, {});
+        Stepper on_planes = world_of(slide, true, {});
+        Stepper on_boxes = world_of(slide, false, {});
         const BodyId body = 2;
         double path = 0, fastest = 0;
         for (int i = 0; i < 360; ++i) {
@@ -118,7 +118,7 @@ TEST(Ramps, EndAtAStep) {
             // Too slow and too flat to tip over it.
             slide.angle = std::min(slide.angle, 0.25);
             slide.way = 0.01 * slide.size[0], slide.speed = 0.1 * std::sqrt(slide.size[1]);
-            World world = world_of(slide, false, settings);
+            Stepper world = world_of(slide, false, settings);
             run(world, 240);
             const Vec4 at = to_matrix(slide.frame).transpose() * world.bodies().position[2];
             const double front = slide.down_ramp().dot(at) + 0.5 * slide.size[0];

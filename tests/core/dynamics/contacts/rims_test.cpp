@@ -88,7 +88,7 @@ Error error_of_precession(const Coin& coin, double lean, double friction, double
     double height;
     PhysicsSettings settings;
     settings.gravity = kDown;
-    World world(precessing(coin, lean, friction, height), settings);
+    Stepper world(precessing(coin, lean, friction, height), settings);
     Error error;
     for (int i = 0; i < 0.5 * steps; ++i) {
         error.overlap = std::max(error.overlap, world.step(1 / steps).penetration);
@@ -122,7 +122,7 @@ struct Ride {
 Ride ride_of(const Bodies& bodies, int steps) {
     PhysicsSettings settings;
     settings.gravity = kDown;
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const auto energy = [&] {
         return kinetic_energy(world.bodies()) + potential_energy(world.bodies(), kDown);
     };

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -80,7 +80,7 @@ TEST(Momentum, StaysInFreeFlightAndCollisions) {
     }
     PhysicsSettings settings;
     settings.gravity.setZero();
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     const Vec4 p = total_momentum(bodies);
     const Bivector L = total_angular_momentum(bodies);
     std::uint64_t contacts = 0;
@@ -95,7 +95,7 @@ TEST(Momentum, GrowsByGravityAlone) {
     Bodies bodies;
     add(bodies, sphere_type(0.5, 3), {1, 2, 3, 4}, {0, 1, 0, 2});
     add(bodies, box_type({1, 1, 2, 1}, 2), {-9, 0, 0, 5}, {1, 0, 0, 0}, {0, 1, 0, 0, 2, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     const Vec4 p = total_momentum(bodies);
     const Bivector L = total_angular_momentum(bodies);
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);

@@ -41,7 +41,7 @@ struct Found {
 };
 Found before_impacts(Bodies bodies) {
     StageCopy copy(Stage::kSolveImpacts);
-    World world(std::move(bodies), PhysicsSettings{});
+    Stepper world(std::move(bodies), PhysicsSettings{});
     world.observe(&copy);
     world.step(kStep);
     Found found{copy.simulation, copy.step};

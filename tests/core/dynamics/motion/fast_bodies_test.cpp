@@ -9,7 +9,7 @@
 #include "core/dynamics/motion/free_path.hpp"
 #include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/step/step.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/motion/throws.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 
@@ -61,7 +61,7 @@ TEST(Throw, AtAWallNeverPassesAndAddsNoEnergy) {
         for (int i = 0; i < throws(40); ++i) {
             std::mt19937_64 random(1000003ULL * kind + i);
             const Throw scene = throw_at_wall(random, kind, i % 2 == 1);
-            World world(scene.bodies, scene.settings);
+            Stepper world(scene.bodies, scene.settings);
             const Gain gain(scene.bodies, scene.settings.gravity);
             double allowed = kNoGain;
             for (int k = 0; k < kStepsOfThrow; ++k) {
@@ -83,7 +83,7 @@ TEST(Throw, ThatFrictionJamsAddsNoEnergy) {
     for (const std::uint32_t coloured_from : {1u, kNoneColoured}) {
         std::mt19937_64 random(1000003ULL + 4866);
         const Throw scene = throw_at_wall(random, 1, false);
-        World world(make_simulation(scene.bodies, scene.settings), coloured_from);
+        Stepper world(make_simulation(scene.bodies, scene.settings), coloured_from);
         const Gain gain(scene.bodies, scene.settings.gravity);
         for (int k = 0; k < kStepsOfThrow; ++k) {
             world.step(scene.dt);
@@ -98,7 +98,7 @@ TEST(Throw, OfRodsThatWhirlAddsNoEnergyInColouredIslands) {
     for (const int i : {39, 137, 151, 217, 265}) {
         std::mt19937_64 random(1000003ULL * 4 + i);
         const Throw scene = throw_at_wall(random, 4, true);
-        World world(make_simulation(scene.bodies, scene.settings), 1);
+        Stepper world(make_simulation(scene.bodies, scene.settings), 1);
         const Gain gain(scene.bodies, scene.settings.gravity);
         for (int k = 0; k < kStepsOfThrow; ++k) {
             const bool overlaps = world.step(scene.dt).penetration > 0;
@@ -110,7 +110,7 @@ TEST(Throw, OfRodsThatWhirlAddsNoEnergyInColouredIslands) {
 /// The balls inscribed in both never meet deeply, nor do they change places within a step: one that
 /// goes round the other leaves the line of their centres.
 void expect_no_passing(const Throw& scene, const std::string& name) {
-    World world(scene.bodies, scene.settings);
+    Stepper world(scene.bodies, scene.settings);
     const Gain gain(scene.bodies, Vec4::Zero());
     const double touch = inscribed_radius(scene.bodies.type_of(0).shape) +
                          inscribed_radius(scene.bodies.type_of(1).shape);
@@ -156,7 +156,7 @@ TEST(Throw, OfABallAtOneBeforeAThinWallDrivesNeitherThrough) {
                     add(bodies, heavy, {-0.3 - gap, 0.001, 0, 0}, {0.1 * speed * 240, 0, 0, 0});
                     PhysicsSettings settings = substeps ? substepped_settings() : PhysicsSettings{};
                     settings.gravity.setZero();
-                    World world(bodies, settings);
+                    Stepper world(bodies, settings);
                     const Gain gain(bodies, Vec4::Zero());
                     for (int i = 0; i < 24; ++i) {
                         world.step(kStep);
@@ -182,7 +182,7 @@ TEST(Throw, OfABallFromNearAThickWallDoesNotSinkIn) {
                     {2 * radius * speed * 240, 0, 0, 0});
                 PhysicsSettings settings = substeps ? substepped_settings() : PhysicsSettings{};
                 settings.gravity.setZero();
-                World world(bodies, settings);
+                Stepper world(bodies, settings);
                 for (int i = 0; i < 24; ++i)
                     ASSERT_LT(world.step(kStep).penetration, 1.01 * kDeepest * 2 * radius)
                         << radius << ' ' << speed;
@@ -199,7 +199,7 @@ TEST(Throw, OfARowOfBoxesStopsAllOfThem) {
         for (int i = 0; i < 5; ++i)
             add(bodies, box_type(Vec4::Constant(0.1)), {-0.3 - 0.101 * i, 0, 0, 0},
                 {0.1 * sizes * 240, 0, 0, 0});
-        World world(bodies, without_gravity());
+        Stepper world(bodies, without_gravity());
         for (int i = 0; i < 24; ++i) {
             world.step(kStep);
             for (BodyId id = 1; id < 6; ++id) {
@@ -217,7 +217,7 @@ TEST(Throw, OfAnElasticBallAtAFloorKeepsItsEnergy) {
         add(bodies, sphere_type(0.1, 1, 0, 1), {0, 1, 0, 0},
             {3, -0.2 * sizes * 240, 0.1 * sizes * 240, 0});
         add(bodies, plane_type(-Vec4::UnitY(), -4, 0, 1));
-        World world(bodies, PhysicsSettings{});
+        Stepper world(bodies, PhysicsSettings{});
         const Gain gain(bodies, {0, -10, 0, 0});
         for (int i = 0; i < 240; ++i) {
             world.step(kStep);
@@ -242,7 +242,7 @@ TEST(Throw, AlongAFloorIsNotStopped) {
             bodies.types[0].friction = 0;
             const double speed = 0.2 * 10 * 240;
             add(bodies, box, {-500, 0.1, 0, 0}, {speed, 0, 0, 0}, {0, 0, 0, 0, 0, 300});
-            World world(bodies, substeps ? substepped_settings() : PhysicsSettings{});
+            Stepper world(bodies, substeps ? substepped_settings() : PhysicsSettings{});
             for (int i = 1; i <= 240; ++i) {
                 world.step(kStep);
                 ASSERT_NEAR(world.bodies().position[1][0], -500 + speed * i * kStep, 1e-6) << i;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -17,7 +17,7 @@ TEST(Flight, OfAProjectileIsExactAtAnyTimeStep) {
     for (int steps_per_second : {10, 60, 240}) {
         Bodies bodies;
         add(bodies, sphere_type(0.5), x0, v0);
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         for (int i = 0; i < 2 * steps_per_second; ++i) world.step(1.0 / steps_per_second);
         const double t = 2;
         const Vec4 x = x0 + t * v0 + 0.5 * t * t * settings.gravity;
@@ -36,7 +36,7 @@ TEST(Flight, OfALoneBoxTurnsItAndKeepsItsSpinInTwoOrthogonalPlanes) {
     omega.xy = 1.5;
     omega.zw = -0.7;
     add(bodies, box_type({1, 2, 3, 4}), Vec4::Zero(), Vec4::Zero(), omega);
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     // Rotations in xy and zw are steady for every J: after 1 s the angles are 1.5 and -0.7 rad.
     const Rotor expected = exp(-0.5 * omega);
@@ -52,13 +52,13 @@ TEST(Flight, MovesNothingThatIsFixedAndHasNoVelocity) {
     fixed.fixed_position = fixed.fixed_rotation = true;
     add(bodies, fixed, {1, 2, 3, 4});
     add(bodies, plane_type(Vec4::UnitY(), 0));
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 100; ++i) world.step(0.01);
     EXPECT_TRUE(same_bits(world.bodies(), bodies));
 }
 
 TEST(TimeStep, MustBeFiniteAndPositive) {
-    World world(Bodies{}, PhysicsSettings{});
+    Stepper world(Bodies{}, PhysicsSettings{});
     for (double dt : {0.0, -1.0, std::numeric_limits<double>::infinity(),
                       std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(world.step(dt), InputError);
@@ -71,7 +71,7 @@ TEST(FiniteRange, LeftByABodyNamesTheLowestAndKeepsTheLastGoodState) {
         add(bodies, sphere_type(0.5), {5.0 * i, 0, 0, 0}, {0, i == 3 || i == 5 ? 1e150 : 0, 0, 0});
     PhysicsSettings settings;
     settings.gravity = {0, 4e153, 0, 0};  // the squares overflow beyond 1.3e154
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     Bodies good;
     StepMemory memory;
     try {
@@ -95,7 +95,7 @@ TEST(FiniteRange, IsCheckedFromTheFirstStepOn) {
     add(bodies, sphere_type(0.5));
     add(bodies, sphere_type(0.5), {5, 0, 0, 0}, {1e200, 0, 0, 0});
     add(bodies, sphere_type(0.5), {9, 0, 0, 0}, Vec4::Zero(), {1e300, 0, 0, 0, 0, 0});
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     try {
         world.step(0.01);
         FAIL();

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -21,13 +21,13 @@ const Bivector kSpin{2.0, -1.1, 0.7, 1.3, -0.4, 0.9};
 
 Vec4 second_moments_of_box(const Vec4& sides) { return kMass / 12 * sides.cwiseAbs2(); }
 
-World spinning_box(const Vec4& sides, const Bivector& omega, RotationIntegrator integrator) {
+Stepper spinning_box(const Vec4& sides, const Bivector& omega, RotationIntegrator integrator) {
     Bodies bodies;
     add(bodies, box_type(sides, kMass), Vec4::Zero(), Vec4::Zero(), omega);
     PhysicsSettings settings;
     settings.gravity.setZero();
     settings.integrator = integrator;
-    return World(bodies, settings);
+    return Stepper(bodies, settings);
 }
 
 /// Angular momentum in the world frame by matrices: L = J Omega + Omega J.
@@ -79,7 +79,7 @@ struct Errors {
 };
 
 Errors errors_after_a_second(RotationIntegrator integrator, int steps) {
-    World world = spinning_box(kSides, kSpin, integrator);
+    Stepper world = spinning_box(kSides, kSpin, integrator);
     const Vec4 J = second_moments_of_box(kSides);
     const double energy = kinetic_energy(world.bodies());
     const double invariant = fourth_invariant(world.bodies(), J);
@@ -93,7 +93,7 @@ Errors errors_after_a_second(RotationIntegrator integrator, int steps) {
 TEST(FreeRotation, KeepsAngularMomentumInTheWorldFrame) {
     for (RotationIntegrator integrator :
          {RotationIntegrator::kEuler, RotationIntegrator::kMidpoint}) {
-        World world = spinning_box(kSides, kSpin, integrator);
+        Stepper world = spinning_box(kSides, kSpin, integrator);
         const Vec4 J = second_moments_of_box(kSides);
         const Mat4 before = momentum(world.bodies(), J);
         for (int i = 0; i < 2400; ++i) world.step(1.0 / 240);
@@ -212,7 +212,7 @@ TEST(FreeRotation, ByMidpointKeepsAllInvariants) {
 }
 
 TEST(FreeRotation, OfAThousandRadiansASecondKeepsItsEnergy) {
-    World world =
+    Stepper world =
         spinning_box(kSides, {900, -300, 200, 100, -50, 20}, RotationIntegrator::kMidpoint);
     const double energy = kinetic_energy(world.bodies());
     for (int i = 0; i < 240; ++i) world.step(1.0 / 60);
@@ -246,7 +246,7 @@ double distance_from_euler(const Triple& start, double time, int steps) {
     omega.yz = static_cast<double>(start[0]);
     omega.xz = -static_cast<double>(start[1]);
     omega.xy = static_cast<double>(start[2]);
-    World world = spinning_box(kSides, omega, RotationIntegrator::kMidpoint);
+    Stepper world = spinning_box(kSides, omega, RotationIntegrator::kMidpoint);
     for (int i = 0; i < steps; ++i) world.step(time / steps);
     const Bodies& bodies = world.bodies();
     const Bivector body = rotate(reverse(bodies.rotor[0]), bodies.angular_velocity[0]);
@@ -286,7 +286,7 @@ TEST(FreeRotation, OfAFixedRotationKeepsItsAngularVelocity) {
     BodyType type = box_type(kSides, kMass);
     type.fixed_rotation = true;
     add(bodies, type, Vec4::Zero(), Vec4::Zero(), kSpin);
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     for (int i = 0; i < 240; ++i) world.step(1.0 / 240);
     EXPECT_EQ(world.bodies().angular_velocity[0], kSpin);
     const Mat4 turned = to_matrix(world.bodies().rotor[0]);

@@ -32,7 +32,7 @@ PhysicsSettings usual_gravity() {
 }
 
 /// The sum of a contact's normal impulses, which the world keeps [N s].
-double load_of(const World& world) {
+double load_of(const Stepper& world) {
     double sum = 0;
     for (const KeptImpulse& impulse : world.memory().impulses) sum += impulse.normal;
     return sum;
@@ -42,7 +42,7 @@ TEST(Motion, FallsByItsPartOfGravity) {
     for (const double scale : {0.0, 0.25, 1.0, 3.0, -1.0}) {
         Bodies bodies;
         add(bodies, scaled_ball(scale), {1, 2, 3, 4}, {0.5, 0, 0, -1});
-        World world(bodies, usual_gravity());
+        Stepper world(bodies, usual_gravity());
         run(world, 240);
         const Vec4 expected = Vec4{1.5, 2, 3, 3} + 0.5 * scale * kDown;
         EXPECT_LT((world.bodies().position[0] - expected).norm(), 1e-12) << scale;
@@ -61,7 +61,7 @@ TEST(Motion, PressesByItsPartOfGravity) {
         BodyType box = box_type({1, 0.998, 1, 1}, 2);
         box.gravity_scale = scale;
         add(bodies, box, {0, 0.5 - std::copysign(0.001, scale), 0, 0});
-        World world(bodies, usual_gravity());
+        Stepper world(bodies, usual_gravity());
         run(world, 240);
         EXPECT_LT(fastest_of(world), 1e-9) << scale;
         EXPECT_NEAR(load_of(world), std::abs(scale) * 20 * kStep, 1e-9 * std::abs(scale)) << scale;
@@ -74,7 +74,7 @@ TEST(Motion, BouncesAsHighAsItFellWhateverItsPartOfGravity) {
         add(bodies, plane_type(Vec4::UnitY(), -10));
         add(bodies, plane_type(-Vec4::UnitY(), -10));
         add(bodies, scaled_ball(scale, 1), {0, scale > 0 ? -8.5 : 8.5, 0, 0});
-        World world(bodies, usual_gravity());
+        Stepper world(bodies, usual_gravity());
         double highest = 0;
         const double start = bodies.position[2][1];
         for (int i = 0; i < 2400; ++i) {
@@ -97,7 +97,7 @@ TEST(Motion, FallsThroughAViscousMediumInSecondOrder) {
         for (const int steps : {60, 120, 240}) {
             Bodies bodies;
             add(bodies, damped(sphere_type(0.5), damping), Vec4::Zero(), v0);
-            World world(bodies, usual_gravity());
+            Stepper world(bodies, usual_gravity());
             for (int i = 0; i < steps; ++i) world.step(1.0 / steps);
             const Vec4 end = kDown / damping;
             const double left = std::exp(-damping);
@@ -122,7 +122,7 @@ TEST(Motion, DampedSpinKeepsTheDirectionOfItsAngularMomentum) {
     Bodies bodies;
     add(bodies, damped(box_type({1, 2, 0.5, 0.8}, 3), 0.7), Vec4::Zero(), Vec4::Zero(),
         {1, -2, 3, 0.5, 0.25, -1});
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     run(world, 480);
     const Bivector before = total_angular_momentum(bodies);
     const Bivector after = total_angular_momentum(world.bodies());
@@ -137,7 +137,7 @@ TEST(Motion, DampingLeavesWhatRestsAndWhatIsFixed) {
     BodyType belt = damped(box_type({2, 0.1, 1, 1}), 5);
     belt.fixed_position = belt.fixed_rotation = true;
     add(bodies, belt, {0, 5, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 0, 0, 2});
-    World world(bodies, usual_gravity());
+    Stepper world(bodies, usual_gravity());
     run(world, 240);
     EXPECT_LT(world.bodies().velocity[1].norm(), 1e-9);
     EXPECT_NEAR(load_of(world), 20 * kStep, 1e-9);
@@ -154,7 +154,7 @@ TEST(Motion, DampingActsOnTheFreedomThatIsLeft) {
     Bodies bodies;
     add(bodies, wheel, Vec4::Zero(), {1, 0, 0, 0}, {4, 0, 0, 0, 0, 0});
     add(bodies, sled, {0, 5, 0, 0}, {1, 0, 0, 0}, {4, 0, 0, 0, 0, 0});
-    World world(bodies, without_gravity());
+    Stepper world(bodies, without_gravity());
     run(world, 240);
     const double left = std::exp(-2.0);
     EXPECT_EQ(world.bodies().velocity[0], Vec4::UnitX());
@@ -173,7 +173,7 @@ TEST(Motion, CollidesOnlyWithTheGroupsThatBothName) {
             Bodies bodies;
             add(bodies, a, {-2, 0, 0, 0}, {2, 0, 0, 0});
             add(bodies, b, {2, 0, 0, 0}, {-2, 0, 0, 0});
-            World world(bodies, without_gravity());
+            Stepper world(bodies, without_gravity());
             run(world, 480);
             const bool collided = world.bodies().velocity[0][0] < 0;
             EXPECT_EQ(collided, a_names && b_names);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 namespace tesserae {
@@ -28,7 +28,7 @@ Bodies two_stacks() {
 }
 
 TEST(Sleeping, StacksAtRestFallAsleepAndStayWhereTheyAre) {
-    World world(two_stacks(), sleepy());
+    Stepper world(two_stacks(), sleepy());
     run(world, 240);
     const std::vector<BodyId> expected{kAwake, 1, 1, 1, 4, 4, 4};
     EXPECT_EQ(world.memory().asleep, expected);
@@ -43,7 +43,7 @@ TEST(Sleeping, StacksAtRestFallAsleepAndStayWhereTheyAre) {
 }
 
 TEST(Sleeping, IsOffByDefault) {
-    World world(two_stacks(), PhysicsSettings{});
+    Stepper world(two_stacks(), PhysicsSettings{});
     run(world, 240);
     EXPECT_TRUE(world.memory().asleep.empty());
     EXPECT_EQ(world.step(kStep).asleep, 0u);
@@ -55,7 +55,7 @@ TEST(Sleeping, AHitWakesTheWholeStackAndNoOther) {
     add(bodies, sphere_type(0.3, 5, 0), {0, 0.5, 0, -7.2}, {0, 0, 0, 5});
     PhysicsSettings settings = sleepy();
     settings.gravity = {0, -1e-3, 0, 0};  // hardly falls on its way
-    World world(bodies, settings), sleepless(bodies, [&] {
+    Stepper world(bodies, settings), sleepless(bodies, [&] {
         PhysicsSettings other = settings;
         other.sleeping = false;
         return other;
@@ -84,7 +84,7 @@ TEST(Sleeping, NothingSleepsOnWhatIsDriven) {
     belt.fixed_position = belt.fixed_rotation = true;
     add(bodies, belt, {0, -0.5, 0, 0}, {1e-4, 0, 0, 0});
     add(bodies, box_type(Vec4::Ones(), 10), {0, 0.5, 0, 0});
-    World world(bodies, sleepy());
+    Stepper world(bodies, sleepy());
     run(world, 480);
     EXPECT_EQ(world.memory().asleep[1], kAwake);
     EXPECT_NEAR(world.bodies().velocity[1][0], 1e-4, 1e-9);
@@ -95,7 +95,7 @@ TEST(Sleeping, AClosingWallWakesWhatItTouches) {
     BodyType wall = box_type({1, 4, 4, 4});
     wall.fixed_position = wall.fixed_rotation = true;
     add(bodies, wall, {-3, 2.5, 0, 0}, {1, 0, 0, 0});
-    World world(bodies, sleepy());
+    Stepper world(bodies, sleepy());
     run(world, 600);  // the wall's face comes from -2.5 and would be at 0, the boxes' were at -0.5
     for (BodyId id = 1; id <= 3; ++id) EXPECT_GT(world.bodies().position[id][0], 0.45) << id;
     EXPECT_EQ(world.memory().asleep[4], 4u);
@@ -104,7 +104,7 @@ TEST(Sleeping, AClosingWallWakesWhatItTouches) {
 TEST(Sleeping, ABodyAtItsHighestPointStaysAwake) {
     Bodies bodies;
     add(bodies, sphere_type(0.5), Vec4::Zero(), {0, 2, 0, 0});
-    World world(bodies, sleepy());
+    Stepper world(bodies, sleepy());
     for (int i = 0; i < 240; ++i) {
         world.step(kStep);
         ASSERT_EQ(world.memory().asleep[0], kAwake);
@@ -122,7 +122,7 @@ TEST(Sleeping, WhatNothingCarriesFliesOn) {
     for (const double x : {0.0, 20.0})  // two that touch, and drift together
         add(bodies, sphere_type(10), {x, -100, 0, 0}, {0, 0, 0.05, 0});
     add(bodies, sphere_type(10), {100, 0, 0, 0});  // stands
-    World world(bodies, weightless);
+    Stepper world(bodies, weightless);
     run(world, 480);
     const Bodies& now = world.bodies();
     EXPECT_EQ(world.memory().asleep, (std::vector<BodyId>{kAwake, kAwake, kAwake, kAwake, 4}));
@@ -140,7 +140,7 @@ TEST(Sleeping, KeepsWhatHoldsRolling) {
     for (int i = 0; i < 6; ++i) add(bodies, sphere_type(0.5, 1, 0.5), up + Vec4(0, 0, 3 * i, 0));
     // Falls on the fourth after 1.2 s.
     add(bodies, sphere_type(0.2, 0.1, 0.5), {0.1, 8.2, 9, 0.05});
-    World world(bodies, sleepy());
+    Stepper world(bodies, sleepy());
     run(world, 240);
     const StepMemory before = world.memory();
     ASSERT_EQ(before.asleep[4], 4u);
@@ -168,9 +168,9 @@ TEST(Sleeping, ContinuesBitForBitFromItsBodiesAndMemory) {
     for (const double rolling_friction : {0.0, 0.02})
         for (const int before : {60, 200, 380}) {
             for (BodyType& type : bodies.types) type.rolling_friction = rolling_friction;
-            World world(bodies, sleepy());
+            Stepper world(bodies, sleepy());
             run(world, before);
-            World resumed(world.bodies(), sleepy());
+            Stepper resumed(world.bodies(), sleepy());
             resumed.memory() = world.memory();
             run(world, 200);
             run(resumed, 200);
@@ -192,7 +192,7 @@ TEST(Sleeping, WhatBeginsToTipFalls) {
             const Vec4 half = 0.5 * Vec4(side, height, side, side);
             const double y = to_matrix(turn).row(1).cwiseAbs().dot(half);
             add(bodies, tower, y * Vec4::UnitY(), Vec4::Zero(), {}, turn);
-            World world(bodies, sleepy());
+            Stepper world(bodies, sleepy());
             run(world, 12 * 240);
             EXPECT_LT(world.bodies().position[1][1], 0.6 * side) << side << ' ' << beyond;
         }
@@ -206,7 +206,7 @@ TEST(Sleeping, ABallOnAGentleSlopeBeginsToRoll) {
             Bodies bodies;
             add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
             add(bodies, sphere_type(radius, 1, 0.5), radius * Vec4::UnitY());
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             run(world, 960);
             EXPECT_NEAR(world.bodies().velocity[1][0], 0.75 * 10 * std::sin(slope) * 4,
                         1e-6 + 1e-6 * radius)

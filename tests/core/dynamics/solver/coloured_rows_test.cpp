@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/dynamics/motion/motion.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 #include "tests/core/dynamics/solver/random_island.hpp"
@@ -284,8 +284,8 @@ TEST(ColouredRows, HoldsHeavyBodiesOnLightOnes) {
             {i % 2 - 0.5, i / 8 + 0.5, i / 2 % 2 - 0.5, i / 4 % 2 - 0.5});
     PhysicsSettings settings = settings_of(30);
     settings.substeps = 8;
-    World plain(make_simulation(bodies, settings), kNoneColoured);
-    World coloured(make_simulation(bodies, settings), 1);
+    Stepper plain(make_simulation(bodies, settings), kNoneColoured);
+    Stepper coloured(make_simulation(bodies, settings), 1);
     double deepest_plain = 0, deepest = 0;
     for (int i = 0; i < 240; ++i) {
         deepest_plain = std::max(deepest_plain, plain.step(kStep).penetration);

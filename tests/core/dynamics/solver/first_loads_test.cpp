@@ -13,7 +13,7 @@ using namespace testing;
 /// The first step as islands are built in it: contacts have what they start from.
 StepData first_step(const Bodies& bodies, const PhysicsSettings& settings) {
     StageCopy copy(Stage::kBuildIslands);
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     world.observe(&copy);
     world.step(kStep);
     return copy.step;
@@ -116,7 +116,7 @@ TEST(FirstLoads, AreOfNothingThatDoesNotStand) {
 /// The warm start stays: the second step starts from what the first one ended with.
 TEST(FirstLoads, AreGuessedOnce) {
     std::mt19937_64 random(2);
-    World world(leaning_tower(random, 0.02), {});
+    Stepper world(leaning_tower(random, 0.02), {});
     world.step(kStep);
     const KeptImpulses left = world.memory().impulses;
     StageCopy copy(Stage::kBuildIslands);
@@ -141,7 +141,7 @@ TEST(FirstLoads, LetSmallTowersStand) {
         BodyType box = box_type(Vec4::Constant(size));
         box.friction = 0.5;
         for (int i = 0; i < count; ++i) add(bodies, box, {0, size * (i + 0.5), 0, 0});
-        World world(bodies, {});
+        Stepper world(bodies, {});
         run(world, 480);
         for (BodyId id = 1; id < bodies.size(); ++id)
             EXPECT_LT((world.bodies().position[id] - bodies.position[id]).norm(), 1e-3 * size)

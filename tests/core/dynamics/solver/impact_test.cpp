@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/dynamics/diagnostics/energy.hpp"
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
 // What bodies that hit each other do, at the defaults and in sub-steps.
@@ -30,7 +30,7 @@ TEST(Impact, OfAHeavyBoxOnALightOneDoesNotThrowItBack) {
             add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
             add(bodies, box_type(Vec4::Ones(), 1), {0, 0.5, 0, 0});
             const BodyId heavy = add(bodies, box_type(Vec4::Ones(), mass), {0, 3.5, 0, 0});
-            World world(bodies, settings);
+            Stepper world(bodies, settings);
             double down = 0, up = 0;
             for (int i = 0; i < 360; ++i) {
                 world.step(kStep);
@@ -61,7 +61,7 @@ void expect_no_gain_on_boards(int falls) {
         const Vec4 place(uniform(random, -0.1, 0.1) * size, 2.5 * size, 0, 0);
         add(bodies, striker, place, Vec4::Zero(), {}, exp(random_bivector(random, 2)));
         PhysicsSettings settings;
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         double least = INFINITY, gain = 0, hardest = 0;
         for (int step = 0; step < 240; ++step) {
             const double overlap = world.step(kStep).penetration;
@@ -90,7 +90,7 @@ double speed_after_row(const PhysicsSettings& settings, double mass, int row, do
         add(bodies, sphere_type(0.5, mass, 0, restitution), {-2, 0, 0, 0}, {10, 0, 0, 0});
     PhysicsSettings weightless = settings;
     weightless.gravity.setZero();
-    World world(bodies, weightless);
+    Stepper world(bodies, weightless);
     const double energy = kinetic_energy(bodies);
     for (int i = 0; i < 480; ++i) {
         world.step(kStep);
@@ -127,7 +127,7 @@ void expect_rows_with_gaps_take_it_up(int trials) {
         add(bodies, plane_type(Vec4::UnitX(), 0, 0, e));
         for (int i = 0; i < row; ++i) add(bodies, type(1), {0.5 + gap + (1 + gap) * i, 0, 0, 0});
         add(bodies, type(mass), {0.5 + gap + (1 + gap) * row, 0, 0, 0}, {-speed, 0, 0, 0});
-        World world(bodies, without_gravity());
+        Stepper world(bodies, without_gravity());
         const double energy = kinetic_energy(bodies);
         double least = energy, won = 0;
         for (int i = 0; i < 360; ++i) {
@@ -168,7 +168,7 @@ Struck strike(int boxes, double mass, double friction, double rolling, bool weig
     const double speed = weightless ? 0.5 : std::sqrt(20 * fall);
     if (weightless) bodies.velocity[ball] = {0, -speed, 0, 0};
     const PhysicsSettings settings = weightless ? without_gravity() : PhysicsSettings{};
-    World world(bodies, settings);
+    Stepper world(bodies, settings);
     Struck struck;
     double least = INFINITY, won = 0;
     for (int i = 0; i < 360; ++i) {
@@ -240,7 +240,7 @@ TEST(Impact, OnARowOfBallsIsANewtonsCradle) {
                 }
                 PhysicsSettings weightless = settings;
                 weightless.gravity.setZero();
-                World world(bodies, weightless);
+                Stepper world(bodies, weightless);
                 run(world, 720);
                 for (int i = 0; i < 5; ++i)
                     EXPECT_NEAR(world.bodies().velocity[i][0], expected[i], 1e-9)
@@ -263,7 +263,7 @@ TEST(Impact, WithoutFrictionThroughTheCentresIsNewtons) {
             Vec4(0, -uniform(random, 3, 9), 0, 0) + random_vector(random, 1));
         PhysicsSettings settings = both_settings()[round % 2];
         settings.gravity.setZero();
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         run(world, 60);
         const Bodies& after = world.bodies();
         const Vec4 change = after.velocity[1] - bodies.velocity[1];
@@ -330,7 +330,7 @@ void expect_impacts_add_nothing(int rounds) {
         settings.gravity.setZero();
         const Bodies bodies = before_impact(random, round / 2 % 2, round / 4 % 2 ? 5 : 1,
                                             kFriction[round / 8 % 4], kRestitution[round / 32 % 5]);
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         double before = kinetic_energy(bodies);
         const double first = before;
         for (int i = 0; i < 240; ++i) {
@@ -361,7 +361,7 @@ TEST(Impact, OfATumblingBodyOnTheFloorAddsNoEnergy) {
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5, 0.9));
         add(bodies, any_type(random, 0.5, 0.9), {0, 1.5, 0, 0}, random_vector(random, 3),
             random_bivector(random, 8), exp(random_bivector(random, 2)));
-        World world(bodies, settings);
+        Stepper world(bodies, settings);
         const double mass = bodies.type_of(1).mass;
         const auto energy = [&] {
             const Bodies& now = world.bodies();

@@ -35,7 +35,7 @@ Jointed rope(int links, double load, double radius, const Vec4& direction) {
     return rope;
 }
 
-double energy_of(const World& world) {
+double energy_of(const Stepper& world) {
     return kinetic_energy(world.bodies()) +
            potential_energy(world.bodies(), world.simulation().settings.gravity);
 }
@@ -44,7 +44,7 @@ double energy_of(const World& world) {
 TEST(JointBlock, HeavyLoadsDoNotStretchARope) {
     for (const double load : {1.0, 200.0, 1800.0}) {
         const Jointed of = rope(50, load, 0.3, -Vec4::UnitY());
-        World world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
+        Stepper world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
         const double first = world.bodies().position.back()[1];
         run(world, 240);
         EXPECT_LT(std::abs(world.bodies().position.back()[1] - first), 1e-5 * 5) << load;
@@ -59,7 +59,7 @@ TEST(JointBlock, ARopeHoldsWhatLeansOnAShelf) {
     shelf.fixed_position = shelf.fixed_rotation = true;
     const Vec4 load = of.bodies.position.back();
     add(of.bodies, shelf, load + Vec4(0.3, -0.2 - 0.05, 0, 0));
-    World world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
+    Stepper world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
     run(world, 480);
     EXPECT_LT((world.bodies().position[of.joints.back().b] - load).norm(), 0.01);
     EXPECT_LT(fastest_of(world), 0.02);
@@ -78,7 +78,7 @@ TEST(JointBlock, IsNoWeakerInALargeIsland) {
     add(of.bodies, box_type({0.9, 0.1, 0.9, 0.2}), {0.4, floor + 0.15, 0.4, 0}, {0, 0, 0, 0});
     add(of.bodies, box_type({0.4, 0.1, 0.4, 0.2}), {0, floor + 0.25, 0, 0});
     const auto torn = [&](const ColouredFrom& way) {
-        World world(make_simulation(of.bodies, PhysicsSettings{}, of.joints), way);
+        Stepper world(make_simulation(of.bodies, PhysicsSettings{}, of.joints), way);
         run(world, 60);
         double farthest = 0;
         for (const Joint& joint : of.joints)
@@ -93,7 +93,7 @@ TEST(JointBlock, IsNoWeakerInALargeIsland) {
 TEST(JointBlock, ARopeThatSwingsGainsNoEnergy) {
     for (const double load : {1.0, 20.0, 200.0}) {
         const Jointed of = rope(20, load, 0.05, Vec4(1, -0.2, 0.3, 0.4).normalized());
-        World world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
+        Stepper world(make_simulation(of.bodies, PhysicsSettings{}, of.joints));
         const double scale = (20 + load) * 10 * 2;  // [J], from the height of its length
         const double first = energy_of(world);
         double least = first, most = first;
@@ -132,7 +132,7 @@ StepData solved_by(const Jointed& of, const ColouredFrom& way, const PhysicsSett
     StageCopy copy(Stage::kFinishStep);
     Simulation simulation = make_simulation(of.bodies, settings, of.joints);
     simulation.joints.in_loop.assign(of.joints.size(), 1);
-    World world(std::move(simulation), way);
+    Stepper world(std::move(simulation), way);
     world.observe(&copy);
     world.step(kStep);
     return copy.step;

@@ -40,7 +40,7 @@ Chain hung_chain(int links, double load, const Vec4& direction) {
     return chain;
 }
 
-double total_energy(const World& world) {
+double total_energy(const Stepper& world) {
     return kinetic_energy(world.bodies()) +
            potential_energy(world.bodies(), world.simulation().settings.gravity);
 }
@@ -53,7 +53,7 @@ TEST(JointGain, AWhipGainsNoEnergy) {
         for (const int links : {7, 20})
             for (const double load : {1.0, 6.0, 20.0, 100.0, 1800.0}) {
                 const Chain chain = hung_chain(links, load, direction);
-                World world(make_simulation(chain.bodies, PhysicsSettings{}, chain.joints));
+                Stepper world(make_simulation(chain.bodies, PhysicsSettings{}, chain.joints));
                 const double fall = (links + load) * 10 * 2 * kLinkRadius * links;
                 const double first = total_energy(world);
                 double most = first;
@@ -81,7 +81,7 @@ TEST(JointGain, LeavesTheMomentaOfWhatIsFree) {
         for (Vec4& v : chain.bodies.velocity) v = random_vector(random, 15);
         for (Bivector& omega : chain.bodies.angular_velocity) omega.xy = uniform(random, -9, 9);
         for (Joint& joint : chain.joints) joint.collide = false;
-        World world(make_simulation(chain.bodies, without_gravity(), chain.joints));
+        Stepper world(make_simulation(chain.bodies, without_gravity(), chain.joints));
         run(world, 2);  // to velocities that the joints allow
         const Vec4 momentum = total_momentum(world.bodies());
         const Bivector angular = total_angular_momentum(world.bodies());
@@ -106,7 +106,7 @@ TEST(JointGain, IsTheSameInAMovingFrame) {
         for (std::size_t i = 1; i < chain.bodies.size(); ++i)
             chain.bodies.velocity[i] = random_vector(random, 8);
         for (Vec4& velocity : chain.bodies.velocity) velocity += v;
-        World world(make_simulation(chain.bodies, without_gravity(), chain.joints));
+        Stepper world(make_simulation(chain.bodies, without_gravity(), chain.joints));
         run(world, 8);
         Vec4 end = world.bodies().position.back();
         end -= 8 * kStep * v;

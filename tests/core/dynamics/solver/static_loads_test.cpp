@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
 
@@ -46,7 +46,7 @@ struct Pile {
 };
 
 /// How far a body has gone sideways, at most.
-double moved_aside(const World& world, const Bodies& start) {
+double moved_aside(const Stepper& world, const Bodies& start) {
     double largest = 0;
     for (BodyId id = 0; id < start.size(); ++id) {
         Vec4 way = world.bodies().position[id] - start.position[id];
@@ -60,7 +60,7 @@ double moved_aside(const World& world, const Bodies& start) {
 TEST(StaticLoads, HoldHighTowersOfSmallCubesStill) {
     for (const double size : {0.01, 0.019, 0.03}) {
         const Bodies start = Pile{Vec4::Constant(size), 25}.bodies(1);
-        World world(start, PhysicsSettings{});
+        Stepper world(start, PhysicsSettings{});
         run(world, 1200);
         EXPECT_LT(fastest_of(world), 1e-3 * size) << size;
         EXPECT_LT(moved_aside(world, start), 1e-3 * size) << size;
@@ -73,7 +73,7 @@ void hold_towers_with_gaps(unsigned towers) {
         const double size = 0.01 * std::pow(2, seed % 4);
         const Bodies start =
             Pile{Vec4::Constant(size), 12 + 4 * static_cast<int>(seed), 0, 0, 0.01}.bodies(seed);
-        World world(start, PhysicsSettings{});
+        Stepper world(start, PhysicsSettings{});
         run(world, 960);
         EXPECT_LT(fastest_of(world), 2e-3 * size) << seed;
         EXPECT_LT(moved_aside(world, start), 0.05 * size) << seed;
@@ -90,7 +90,7 @@ TEST(StaticLoadsSlow, HoldPilesOfSmallBoards) {
         const Pile pile = {
             {s, 0.12 * s, 0.5 * s, 0.5 * s}, 10 + static_cast<int>(seed % 10), 0.3, 0.2, 0.01};
         const Bodies start = pile.bodies(seed);
-        World world(start, PhysicsSettings{});
+        Stepper world(start, PhysicsSettings{});
         run(world, 4800);
         EXPECT_LT(fastest_of(world), 1e-3 * s) << seed;
         EXPECT_LT(moved_aside(world, start), 0.05 * s) << seed;
@@ -129,7 +129,7 @@ TEST(StaticLoads, StopWhatCreeps) {
     for (unsigned seed = 0; seed < 60; ++seed) {
         const Vec4 size = seed % 2 ? Vec4(0.4, 0.1, 0.3, 0.3) : Vec4(0.02, 0.03, 0.025, 0.02);
         StageCopy copy(Stage::kSolveIslands);
-        World world(
+        Stepper world(
             make_simulation(Pile{size, 2 + static_cast<int>(seed) / 2, 0.2, 0.2}.bodies(seed),
                             PhysicsSettings{}),
             seed % 4 < 2 ? 1 : kNoneColoured);
@@ -169,7 +169,7 @@ TEST(StaticLoads, AreNotOfWhatSlidesOrIsHit) {
     StageCopy copy(Stage::kSolveIslands);
     Bodies bodies = Pile{Vec4::Constant(0.1), 3}.bodies(0);
     for (BodyId id = 1; id < bodies.size(); ++id) bodies.velocity[id][0] = 0.1 * id;
-    World world(bodies, PhysicsSettings{});
+    Stepper world(bodies, PhysicsSettings{});
     run(world, 2);
     world.observe(&copy);
     world.step(kStep);

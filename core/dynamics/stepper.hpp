@@ -22,12 +22,12 @@ namespace tesserae {
 ///
 /// A step depends on bodies() and memory() only: a world that is made from both as saved continues
 /// with the same bits.
-class World {
+class Stepper {
   public:
     /// @throws InputError   as make_simulation()
-    World(Bodies bodies, const PhysicsSettings& settings);
+    Stepper(Bodies bodies, const PhysicsSettings& settings);
     /// @param coloured_from   for tests and measurements
-    explicit World(Simulation simulation, ColouredFrom coloured_from = {});
+    explicit Stepper(Simulation simulation, ColouredFrom coloured_from = {});
 
     /// Advances by dt [s].
     /// @throws InputError        dt is not finite or not > 0

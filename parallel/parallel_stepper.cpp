@@ -1,4 +1,4 @@
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 
 #include <optional>
 #include <utility>
@@ -9,7 +9,7 @@
 namespace tesserae::parallel {
 
 /// Makes each stage a span of a trace.
-class ParallelWorld::StageSpans : public StageObserver {
+class ParallelStepper::StageSpans : public StageObserver {
   public:
     explicit StageSpans(Trace* trace) : trace_(trace) {}
 
@@ -23,25 +23,25 @@ class ParallelWorld::StageSpans : public StageObserver {
     std::optional<Trace::Span> span_;
 };
 
-ParallelWorld::ParallelWorld(Bodies bodies, const PhysicsSettings& settings)
+ParallelStepper::ParallelStepper(Bodies bodies, const PhysicsSettings& settings)
     : world_(std::move(bodies), settings) {}
 
-ParallelWorld::ParallelWorld(Simulation simulation) : world_(std::move(simulation)) {}
+ParallelStepper::ParallelStepper(Simulation simulation) : world_(std::move(simulation)) {}
 
-ParallelWorld::~ParallelWorld() = default;
+ParallelStepper::~ParallelStepper() = default;
 
-StepReport ParallelWorld::step(double dt) {
+StepReport ParallelStepper::step(double dt) {
     // A graph works in the arena that it is built in, and the first step is the first to know it.
     if (!schedule_) schedule_ = std::make_unique<ThreadedSchedule>();
     schedule_->set_trace(trace_);
     return world_.step(dt, *schedule_);
 }
 
-void ParallelWorld::forget_hints() {
+void ParallelStepper::forget_hints() {
     if (schedule_) schedule_->forget_hints();
 }
 
-void ParallelWorld::set_trace(Trace* trace) {
+void ParallelStepper::set_trace(Trace* trace) {
     trace_ = trace;
     spans_ = trace ? std::make_unique<StageSpans>(trace) : nullptr;
     world_.observe(spans_.get());

@@ -3,21 +3,21 @@
 #include <memory>
 #include <span>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 namespace tesserae::parallel {
 
 class ThreadedSchedule;
 class Trace;
 
-/// core's World on several threads: the same step, on a ThreadedSchedule, with the same bits at any
+/// core's Stepper on several threads: the same step, on a ThreadedSchedule, with the same bits at any
 /// number of threads.
-class ParallelWorld {
+class ParallelStepper {
   public:
     /// @throws InputError   as make_simulation()
-    ParallelWorld(Bodies bodies, const PhysicsSettings& settings);
-    explicit ParallelWorld(Simulation simulation);
-    ~ParallelWorld();
+    ParallelStepper(Bodies bodies, const PhysicsSettings& settings);
+    explicit ParallelStepper(Simulation simulation);
+    ~ParallelStepper();
 
     /// Advances by dt [s], on the threads of the arena in which the first call is made: every call
     /// belongs inside run() of the same Threads.
@@ -38,13 +38,13 @@ class ParallelWorld {
     const StepMemory& memory() const { return world_.memory(); }
     StepMemory& memory() { return world_.memory(); }
     const Joints& joints() const { return world_.simulation().joints; }
-    /// See World.
+    /// See Stepper.
     std::span<const Wrench> joint_impulses() const { return world_.joint_impulses(); }
 
   private:
     class StageSpans;
 
-    World world_;
+    Stepper world_;
     std::unique_ptr<ThreadedSchedule> schedule_;  ///< from the first step on
     Trace* trace_ = nullptr;
     std::unique_ptr<StageSpans> spans_;  ///< of the trace

@@ -1,8 +1,8 @@
-#include "parallel/parallel_world.hpp"
+#include "parallel/parallel_stepper.hpp"
 
 #include <gtest/gtest.h>
 
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 #include "parallel/threads.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/parallel/first_difference.hpp"
@@ -16,7 +16,7 @@ constexpr double kStep = 1.0 / 240;
 constexpr int kSteps = 300;
 
 struct Reference {
-    World world{heap_of_spheres(300), PhysicsSettings{}};
+    Stepper world{heap_of_spheres(300), PhysicsSettings{}};
     std::uint64_t contacts = 0;
 
     Reference() {
@@ -34,7 +34,7 @@ class ParallelWorldOf : public ::testing::TestWithParam<int> {};
 TEST_P(ParallelWorldOf, ThreadsHasTheBitsOfTheSerialWorld) {
     const Bodies start = heap_of_spheres(300);
     Threads threads(GetParam());
-    ParallelWorld world(start, PhysicsSettings{});
+    ParallelStepper world(start, PhysicsSettings{});
     std::uint64_t contacts = 0;
     threads.run([&] {
         for (int i = 0; i < kSteps; ++i) contacts += world.step(kStep).contacts;
@@ -61,11 +61,11 @@ Bodies towers() {
     return bodies;
 }
 
-TEST(ParallelWorld, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
-    World serial(towers(), PhysicsSettings{});
+TEST(ParallelStepper, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
+    Stepper serial(towers(), PhysicsSettings{});
     for (int i = 0; i < 150; ++i) serial.step(kStep);
     Threads threads(3);
-    ParallelWorld world(towers(), PhysicsSettings{});
+    ParallelStepper world(towers(), PhysicsSettings{});
     threads.run([&] {
         for (int i = 0; i < 150; ++i) world.step(kStep);
     });
@@ -73,13 +73,13 @@ TEST(ParallelWorld, SolvesManyIslandsToTheBitsOfTheSerialWorld) {
         << first_difference(towers(), {}, kStep, 150, threads);
 }
 
-TEST(ParallelWorld, ReportsTheBitsOfTheSerialWorld) {
+TEST(ParallelStepper, ReportsTheBitsOfTheSerialWorld) {
     // Without a fall: every sphere overlaps its neighbours, in several pieces of contacts.
     Bodies bodies = heap_of_spheres(1200, 8);
     for (BodyId id = 7; id < bodies.size(); ++id) bodies.position[id] *= 0.6;
-    World serial(bodies, PhysicsSettings{});
+    Stepper serial(bodies, PhysicsSettings{});
     Threads threads(3);
-    ParallelWorld world(bodies, PhysicsSettings{});
+    ParallelStepper world(bodies, PhysicsSettings{});
     threads.run([&] {
         for (int i = 0; i < 3; ++i) {
             const StepReport p = serial.step(kStep), q = world.step(kStep);
@@ -93,10 +93,10 @@ TEST(ParallelWorld, ReportsTheBitsOfTheSerialWorld) {
     });
 }
 
-TEST(ParallelWorld, ContinuesASerialRun) {
-    World serial(towers(), PhysicsSettings{});
+TEST(ParallelStepper, ContinuesASerialRun) {
+    Stepper serial(towers(), PhysicsSettings{});
     for (int i = 0; i < 40; ++i) serial.step(kStep);
-    ParallelWorld world(serial.bodies(), PhysicsSettings{});
+    ParallelStepper world(serial.bodies(), PhysicsSettings{});
     world.memory() = serial.memory();
     Threads threads(2);
     threads.run([&] {
@@ -106,11 +106,11 @@ TEST(ParallelWorld, ContinuesASerialRun) {
     EXPECT_EQ(difference_of(serial, world), "");
 }
 
-TEST(ParallelWorld, NamesTheLowestBodyThatLeftTheFiniteRange) {
+TEST(ParallelStepper, NamesTheLowestBodyThatLeftTheFiniteRange) {
     Bodies bodies = heap_of_spheres(2000);
     for (BodyId id : {1900u, 1000u, 900u}) bodies.velocity[id] = {1e200, 0, 0, 0};
     Threads threads(4);
-    ParallelWorld world(bodies, PhysicsSettings{});
+    ParallelStepper world(bodies, PhysicsSettings{});
     threads.run([&] {
         try {
             world.step(kStep);
@@ -122,13 +122,13 @@ TEST(ParallelWorld, NamesTheLowestBodyThatLeftTheFiniteRange) {
     EXPECT_TRUE(same_bits(world.bodies(), bodies));
 }
 
-TEST(ParallelWorld, RefusesWhatTheSerialWorldRefuses) {
+TEST(ParallelStepper, RefusesWhatTheSerialWorldRefuses) {
     Bodies bodies;
     add(bodies, sphere_type(1));
     bodies.velocity.clear();
-    EXPECT_THROW(ParallelWorld(bodies, PhysicsSettings{}), InputError);
+    EXPECT_THROW(ParallelStepper(bodies, PhysicsSettings{}), InputError);
     Threads threads(2);
-    ParallelWorld empty(Bodies{}, PhysicsSettings{});
+    ParallelStepper empty(Bodies{}, PhysicsSettings{});
     threads.run([&] {
         EXPECT_THROW(empty.step(0), InputError);
         EXPECT_EQ(empty.step(kStep).contacts, 0u);
@@ -158,14 +158,14 @@ void expect_serial_bits_at_impacts(const std::vector<int>& counts) {
     for (const int substeps : {1, 2}) {
         PhysicsSettings settings;
         settings.substeps = substeps;
-        World serial(start, settings);
+        Stepper serial(start, settings);
         FastHalves fast;
         serial.observe(&fast);
         for (int i = 0; i < 30; ++i) serial.step(kStep);
         EXPECT_GT(fast.count, 20);
         for (const int count : counts) {
             Threads threads(count);
-            ParallelWorld world(start, settings);
+            ParallelStepper world(start, settings);
             threads.run([&] {
                 for (int i = 0; i < 30; ++i) world.step(kStep);
             });
@@ -174,7 +174,7 @@ void expect_serial_bits_at_impacts(const std::vector<int>& counts) {
     }
 }
 
-TEST(ParallelWorld, HasTheBitsOfTheSerialWorldWhereBodiesAreStoppedAtImpacts) {
+TEST(ParallelStepper, HasTheBitsOfTheSerialWorldWhereBodiesAreStoppedAtImpacts) {
     expect_serial_bits_at_impacts({3});
 }
 TEST(ParallelWorldSlow, HasTheBitsOfTheSerialWorldWhereBodiesAreStoppedAtImpacts) {

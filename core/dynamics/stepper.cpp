@@ -1,4 +1,4 @@
-#include "core/dynamics/world.hpp"
+#include "core/dynamics/stepper.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -23,9 +23,9 @@ constexpr std::size_t kBodyGrain = 256, kPairGrain = 64, kContactGrain = 1024, k
 }  // namespace
 
 /// A stage from its beginning to its end.
-class World::Observed {
+class Stepper::Observed {
   public:
-    Observed(const World& world, Stage stage, std::size_t items)
+    Observed(const Stepper& world, Stage stage, std::size_t items)
         : observer_(world.observer_), stage_(stage) {
         if (observer_) observer_->begin(stage, items, world.simulation_, world.step_);
     }
@@ -40,18 +40,18 @@ class World::Observed {
     Stage stage_;
 };
 
-World::World(Bodies bodies, const PhysicsSettings& settings)
-    : World(make_simulation(std::move(bodies), settings)) {}
+Stepper::Stepper(Bodies bodies, const PhysicsSettings& settings)
+    : Stepper(make_simulation(std::move(bodies), settings)) {}
 
-World::World(Simulation simulation, ColouredFrom coloured_from)
+Stepper::Stepper(Simulation simulation, ColouredFrom coloured_from)
     : simulation_(std::move(simulation)), island_builder_(coloured_from) {}
 
-StepReport World::step(double dt) {
+StepReport Stepper::step(double dt) {
     Schedule serial;
     return step(dt, serial);
 }
 
-StepReport World::step(double dt, Schedule& schedule) {
+StepReport Stepper::step(double dt, Schedule& schedule) {
     if (simulation_.joints.broken != memory().broken)
         set_broken(simulation_.joints, bodies(), memory().broken);
     begin_step(simulation_, step_, dt);
@@ -72,7 +72,7 @@ StepReport World::step(double dt, Schedule& schedule) {
     return finish_step(schedule);
 }
 
-void World::advance_first_half(Schedule& schedule) {
+void Stepper::advance_first_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
     step_.rows_in_use = false;
     has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
@@ -83,7 +83,7 @@ void World::advance_first_half(Schedule& schedule) {
     require_finite(schedule);
 }
 
-void World::find_pairs(Schedule& schedule) {
+void Stepper::find_pairs(Schedule& schedule) {
     const std::size_t count = simulation_.bodies.size();
     const Observed stage(*this, Stage::kFindPairs, count);
     const auto outgrows = [&](Range bodies) { return outgrows_bounds(simulation_, step_, bodies); };
@@ -91,14 +91,14 @@ void World::find_pairs(Schedule& schedule) {
     find_pairs_anew(schedule);
 }
 
-void World::find_pairs_anew(Schedule& schedule) {
+void Stepper::find_pairs_anew(Schedule& schedule) {
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain,
                             [&](Range bodies) { update_bounds(simulation_, step_, bodies); });
     schedule.find_pairs(simulation_, step_);
     leave_jointed_pairs_out(simulation_, step_);
 }
 
-void World::find_contacts(Schedule& schedule) {
+void Stepper::find_contacts(Schedule& schedule) {
     const Observed stage(*this, Stage::kFindContacts, step_.pairs.size());
     if (step_.substep > 0) step_.last_kept.swap(step_.kept);
     do find_manifolds(schedule);
@@ -111,11 +111,11 @@ void World::find_contacts(Schedule& schedule) {
 }
 
 /// What the sub-step before this one kept.
-const std::vector<KeptManifolds>& World::last_kept() const {
+const std::vector<KeptManifolds>& Stepper::last_kept() const {
     return step_.substep > 0 ? step_.last_kept : simulation_.memory.kept;
 }
 
-void World::find_manifolds(Schedule& schedule) {
+void Stepper::find_manifolds(Schedule& schedule) {
     if (simulation_.needs.manifolds) {
         begin_kept(step_, kPairGrain, last_kept(), spare_manifolds_);
         clearances_.begin(simulation_, step_, schedule);
@@ -127,7 +127,7 @@ void World::find_manifolds(Schedule& schedule) {
     contacts_.for_each_wave(for_each_range, step_.pairs.size(), kPairGrain, find, append);
 }
 
-void World::find_contacts_of(Range pairs, std::vector<Contact>& list) {
+void Stepper::find_contacts_of(Range pairs, std::vector<Contact>& list) {
     if (!simulation_.needs.manifolds)
         return tesserae::find_contacts(simulation_, step_, pairs, list);
     const std::size_t first = pairs.begin / kPairGrain;
@@ -138,7 +138,7 @@ void World::find_contacts_of(Range pairs, std::vector<Contact>& list) {
 }
 
 /// @return whether any body woke: then there are other pairs
-bool World::wake_touched(Schedule& schedule) {
+bool Stepper::wake_touched(Schedule& schedule) {
     const auto touches = [&](Range contacts) { return touches_sleeper(step_, contacts); };
     const bool wakes = schedule.any_range(step_.contacts.size(), kContactGrain, touches) &&
                        tesserae::wake_touched(simulation_, step_);
@@ -149,33 +149,33 @@ bool World::wake_touched(Schedule& schedule) {
     return wakes;
 }
 
-void World::find_warm_starts(Schedule& schedule) {
+void Stepper::find_warm_starts(Schedule& schedule) {
     begin_contacts(simulation_, step_);
     schedule.for_each_range(step_.contacts.size(), kContactGrain, [&](Range contacts) {
         tesserae::find_warm_starts(simulation_, step_, contacts);
     });
 }
 
-void World::aim_rims(Schedule& schedule) {
+void Stepper::aim_rims(Schedule& schedule) {
     count_company(simulation_, step_);
     const auto aim = [&](Range runs) { tesserae::aim_rims(simulation_, step_, runs); };
     schedule.for_each_range(step_.contacts.run_count(), kContactGrain, aim);
 }
 
-void World::pose_joints(Schedule& schedule) {
+void Stepper::pose_joints(Schedule& schedule) {
     list_joints(simulation_, step_);
     schedule.for_each_range(step_.constraints.size(), kJointGrain, [&](Range joints) {
         tesserae::pose_joints(simulation_, step_, joints.begin, joints.end);
     });
 }
 
-void World::build_islands() {
+void Stepper::build_islands() {
     const Observed stage(*this, Stage::kBuildIslands, step_.contacts.size());
     island_builder_.build(simulation_, step_);
     step_.rows_in_use = true;
 }
 
-void World::solve_impacts(Schedule& schedule) {
+void Stepper::solve_impacts(Schedule& schedule) {
     const Observed stage(*this, Stage::kSolveImpacts, step_.islands.size());
     const std::size_t count = step_.contacts.size();
     hits_.resize(count / kContactGrain + 1);
@@ -190,19 +190,19 @@ void World::solve_impacts(Schedule& schedule) {
     if (impact_patches_.end(simulation_, step_)) schedule.solve_impacts(simulation_, step_);
 }
 
-void World::integrate_velocities(Schedule& schedule) {
+void Stepper::integrate_velocities(Schedule& schedule) {
     const Observed stage(*this, Stage::kIntegrateVelocities, simulation_.bodies.size());
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         tesserae::integrate_velocities(simulation_, step_, bodies);
     });
 }
 
-void World::solve_islands(Schedule& schedule) {
+void Stepper::solve_islands(Schedule& schedule) {
     const Observed stage(*this, Stage::kSolveIslands, step_.islands.size());
     schedule.solve_islands(simulation_, step_);
 }
 
-void World::advance_second_half(Schedule& schedule) {
+void Stepper::advance_second_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceSecondHalf, simulation_.bodies.size());
     has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
@@ -212,7 +212,7 @@ void World::advance_second_half(Schedule& schedule) {
 }
 
 /// What an impact made fast may have come out of the bounds that the pairs were found by.
-void World::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
+void Stepper::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
     if (std::find(has_fast_.begin(), has_fast_.end(), 1) == has_fast_.end()) return;
     const std::size_t count = simulation_.bodies.size();
     const Observed stage(*this, Stage::kStopFastBodies, step_.pairs.size());
@@ -224,7 +224,7 @@ void World::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
     fast_bodies_.stop(simulation_, step_, schedule, half);
 }
 
-void World::drop_corrections(Schedule& schedule) {
+void Stepper::drop_corrections(Schedule& schedule) {
     const Observed stage(*this, Stage::kDropCorrections, step_.islands.size());
     schedule.drop_corrections(simulation_, step_);
     if (simulation_.needs.damping)
@@ -235,7 +235,7 @@ void World::drop_corrections(Schedule& schedule) {
 
 /// For the next sub-step, or the next step once nothing can go wrong in this one: these are the
 /// memory's. Both are written over what this sub-step started from.
-void World::keep_impulses(Schedule& schedule) {
+void Stepper::keep_impulses(Schedule& schedule) {
     const LeftImpulses left = left_impulses(simulation_, step_);
     if (!step_.asleep.empty()) return merge_impulses(simulation_, step_, left);
     const std::size_t count = step_.impulses.size();
@@ -252,7 +252,7 @@ void World::keep_impulses(Schedule& schedule) {
     });
 }
 
-StepReport World::finish_step(Schedule& schedule) {
+StepReport Stepper::finish_step(Schedule& schedule) {
     const Observed stage(*this, Stage::kFinishStep, step_.contacts.size());
     require_finite(schedule);
     begin_report(step_);
@@ -264,7 +264,7 @@ StepReport World::finish_step(Schedule& schedule) {
 }
 
 /// Ranges find out whether any body is not finite, and only then the lowest is looked for.
-void World::require_finite(Schedule& schedule) const {
+void Stepper::require_finite(Schedule& schedule) const {
     const auto has_none = [&](Range bodies) { return !is_finite(simulation_, step_, bodies); };
     if (schedule.any_range(simulation_.bodies.size(), kBodyGrain, has_none))
         tesserae::require_finite(simulation_, step_);
