@@ -72,6 +72,17 @@ StepReport Stepper::step(double dt, Schedule& schedule) {
     return finish_step(schedule);
 }
 
+void Stepper::put_back_arrays() {
+    const auto put_back = [](auto& result, auto& begun_with) {
+        result.swap(begun_with);
+        result = begun_with;
+    };
+    put_back(simulation_.bodies.position, step_.position);
+    put_back(simulation_.bodies.rotor, step_.rotor);
+    put_back(simulation_.bodies.velocity, step_.velocity);
+    put_back(simulation_.bodies.angular_velocity, step_.angular_velocity);
+}
+
 void Stepper::advance_first_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
     step_.rows_in_use = false;

@@ -41,6 +41,14 @@ class Stepper {
     void observe(StageObserver* observer) { observer_ = observer; }
 
     const Simulation& simulation() const { return simulation_; }
+    /// For who moves bodies between steps. What is computed from them has to fit afterwards.
+    Simulation& simulation() { return simulation_; }
+    /// Returns what the stages of the last step handed on, as its last sub-step left it.
+    const StepData& last_step() const { return step_; }
+    /// Copies the last step's result into the arrays of bodies that the step began with: a step
+    /// writes to other arrays, and those who look at the first ones would see old states.
+    void put_back_arrays();
+
     const Bodies& bodies() const { return simulation_.bodies; }
     const StepMemory& memory() const { return simulation_.memory; }
     StepMemory& memory() { return simulation_.memory; }

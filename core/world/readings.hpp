@@ -27,7 +27,7 @@ struct BodyArrays {
 };
 
 /// A point where two bodies touch.
-struct ContactPoint {
+struct ContactReading {
     BodyId a = 0, b = 0;           ///< a < b
     Vec4 point = Vec4::Zero();     ///< midway between the surfaces, world [m]
     Vec4 normal = Vec4::Zero();    ///< unit, from a to b, world
@@ -49,13 +49,13 @@ struct ContactChanges {
 
 /// What a joint is and did in the last step.
 struct JointReading {
-    BodyId a = 0, b = 0;        ///< b may be kWorld
-    bool broken = false;        ///< its load was too much: it holds nothing any more
-    double impulse = 0;         ///< between the bodies, in the last step [N s]
-    double angular_impulse = 0; ///< about the anchor [N m s]
-    double error = 0;           ///< how far held points are apart [m]
-    double angular_error = 0;   ///< by what angle held directions are off [rad]
-    double position = 0;        ///< of its one free coordinate [m, rad]; NaN if it has not one
+    BodyId a = 0, b = 0;         ///< b may be kWorld
+    bool broken = false;         ///< its load was too much: it holds nothing any more
+    double impulse = 0;          ///< between the bodies, in the last step [N s]
+    double angular_impulse = 0;  ///< about the anchor [N m s]
+    double error = 0;            ///< how far held points are apart [m]
+    double angular_error = 0;    ///< by what angle held directions are off [rad]
+    double position = 0;         ///< of its one free coordinate [m, rad]; NaN if it has not one
 };
 
 /// Where a ray meets a body.

@@ -17,6 +17,8 @@
 
 namespace tesserae {
 
+struct Simulation;
+
 /// A world of rigid bodies in four dimensions. Bodies and joints are added and removed between
 /// steps, read, moved and pushed.
 ///
@@ -27,7 +29,8 @@ namespace tesserae {
 /// a time: calls from several threads at once need a lock. Different worlds are independent.
 ///
 /// Functions that take a body's or joint's number throw InputError if the world has none with it.
-/// Every number that is given is checked; the error names the place, the value and the rule.
+/// Every number that is given is checked. An InputError says which one is wrong, and what was
+/// expected; the world is then as before the call.
 class World {
   public:
     /// Makes an empty world.
@@ -123,7 +126,7 @@ class World {
     /// Returns the contact points of the last step: those of its last sub-step that touch, overlap
     /// or push, ascending by bodies. Points between bodies that sleep are not among them. It is
     /// valid until the next step.
-    std::span<const ContactPoint> contacts() const;
+    std::span<const ContactReading> contacts() const;
     /// Returns which pairs of bodies touch since the last call, and which do so no more. Call it
     /// after every step to miss none. Bodies that sleep touch each other still.
     ContactChanges contact_changes();
@@ -166,6 +169,7 @@ class World {
 
   private:
     class Inside;
+    friend World make_world(Simulation simulation, std::shared_ptr<Workers> workers);
     explicit World(std::unique_ptr<Inside> inside);
 
     std::unique_ptr<Inside> inside_;

@@ -20,8 +20,6 @@
 namespace tesserae::scenes {
 
 constexpr std::uint64_t kMaxBodies = 10'000'000;
-/// Masses [kg] whose inertia and inverse inertia stay inside the range of double for all sizes.
-constexpr double kLeastMass = 1e-60, kLargestMass = 1e60;
 
 // In the order of the enumerations in core/dynamics/step/settings.hpp.
 constexpr std::string_view kRotationIntegrators[] = {"euler", "midpoint"};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.hpp"
 
@@ -18,7 +19,19 @@ Vec4 axis_of(char letter) {
     return Vec4::Unit(static_cast<Eigen::Index>(std::string_view("xyzw").find(letter)));
 }
 
+constexpr double kDegree = std::numbers::pi / 180;
+
 }  // namespace
+
+JointDescription in_radians(const JointTable& table) {
+    JointDescription joint = table;
+    joint.rotation = rotor_of(table.turns);
+    for (std::size_t i = kFirstAngle; i < kJointCoordinates; ++i) {
+        if (joint.limits[i]) *joint.limits[i] *= kDegree;
+        if (joint.motors[i] && joint.motors[i]->target) *joint.motors[i]->target *= kDegree;
+    }
+    return joint;
+}
 
 void JointTypeName::read(TableReader& reader, const char* key, JointTable& joint) const {
     std::string expected = "expected one of";

@@ -14,73 +14,21 @@
 // type.
 namespace tesserae::scenes {
 
-enum class JointType {
-    kPoint,
-    kDistance,
-    kRope,
-    kSpring,
-    kWeld,
-    kSlider,
-    kHinge,
-    kSwivel,
-    kGeneral
-};
 constexpr std::string_view kJointTypes[] = {"point",  "distance", "rope",   "spring", "weld",
                                             "slider", "hinge",    "swivel", "general"};
 
 /// The coordinates of a FrameJoint: distances along its axes, then angles in its planes.
-constexpr std::array<std::string_view, kMostRows> kCoordinateNames = {"x",  "y",  "z",  "w",  "xy",
-                                                                      "xz", "xw", "yz", "yw", "zw"};
-constexpr int kFirstAngle = 4;
-/// The coordinates that sliders and hinges leave free.
-constexpr int kSliding = 0, kTurning = kFirstAngle;
-
-/// What some of the coordinates have.
-template <class T>
-using OfCoordinates = std::array<std::optional<T>, kMostRows>;
-
-/// A spring has either a frequency or a stiffness.
-struct JointSpring {
-    std::optional<double> frequency;      ///< [Hz]
-    std::optional<double> damping;        ///< part of the critical one
-    std::optional<double> stiffness;      ///< [N/m, N m/rad]
-    std::optional<double> damping_force;  ///< [N s/m, N m s/rad]
-};
-/// A motor has either a speed or a target.
-struct JointMotor {
-    std::optional<double> speed;               ///< [m/s, rad/s]
-    std::optional<double> target;              ///< [m, degrees]
-    std::optional<double> frequency, damping;  ///< of the way to the target: as a spring's
-    std::optional<double> max;                 ///< [N, N m]
-};
-struct JointBreak {
-    std::optional<double> force, torque;  ///< [N, N m]
-};
-/// A plane is turned in from the first direction toward the second.
-struct JointPlane {
-    Vec4 first = Vec4::UnitX(), second = Vec4::UnitY();
-};
-
-/// A [[joint]] table, as written. Points and directions are the world's at time 0.
-struct JointTable {
+constexpr std::array<std::string_view, kJointCoordinates> kCoordinateNames = {
+    "x", "y", "z", "w", "xy", "xz", "xw", "yz", "yw", "zw"};
+/// A [[joint]] table, as written: its angles are in degrees.
+struct JointTable : JointDescription {
     std::string name;
-    bool has_type = false;  ///< false: it is missing or wrong
-    JointType type = JointType::kPoint;
-    std::string a, b;  ///< names of bodies; an empty b is the world
-    Vec4 anchor = Vec4::Zero();
-    std::optional<Vec4> anchor_a, anchor_b;
-    std::optional<double> length;
-    Vec4 axis = Vec4::UnitX();
-    JointPlane plane;
-    std::vector<Bivector> rotation{1};  ///< [degrees]
-    std::uint16_t free = 0;             ///< a bit for each coordinate
-    JointSpring spring;                 ///< of a "spring"
-    OfCoordinates<Vec2> limits;         ///< [m, degrees]
-    OfCoordinates<JointSpring> springs;
-    OfCoordinates<JointMotor> motors;
-    std::optional<JointBreak> breaks;
-    bool collide = false;
+    bool has_type = false;           ///< false: it is missing or wrong
+    std::string a, b;                ///< names of bodies; an empty b is the world
+    std::vector<Bivector> turns{1};  ///< of the axes of a general joint [degrees]
 };
+/// Returns what a table asks for, in radians.
+JointDescription in_radians(const JointTable& table);
 
 /// The name of a joint's type. Whether it could be read is in the table's has_type.
 struct JointTypeName {
@@ -156,7 +104,7 @@ struct ForEachFree {
 
     void read(TableReader& reader, const char* key, auto& values) const {
         reader.read_inside(key, example, [&](TableReader& inside) {
-            for (int i = 0; i < kMostRows; ++i) {
+            for (int i = 0; i < FrameJoint::kSize; ++i) {
                 const auto at = static_cast<std::size_t>(i);
                 const std::string_view name = kCoordinateNames[at];
                 if (!inside.has(name)) continue;
@@ -171,7 +119,7 @@ struct ForEachFree {
     }
     void write(EffectiveWriter& out, const char* key, const auto& values) const {
         EffectiveWriter lines;
-        for (int i = 0; i < kMostRows; ++i)
+        for (int i = 0; i < FrameJoint::kSize; ++i)
             if (const auto at = static_cast<std::size_t>(i); values[at])
                 lines.line(kCoordinateNames[at], R{i}.text(*values[at]));
         if (!lines.text().empty()) out.line(key, inline_table(lines));
@@ -241,10 +189,6 @@ void spring_keys(auto& self, const auto& visit) {
           self.damping_force, Rule::kNonNegative);
 }
 
-/// How stiffly a motor holds its target, where that is not said: fast for a machine, and without
-/// swinging.
-constexpr double kMotorFrequency = 5, kMotorDamping = 1;
-
 /// motor = { ... }
 void motor_keys(auto& self, const auto& visit, int coordinate) {
     visit({"speed", "m/s, rad/s", "The motor drives the joint at this speed.", "or a target"},
@@ -310,7 +254,7 @@ void general_keys(auto& self, const auto& visit) {
     visit({"rotation", "deg",
            "The joint's axes are the world's, turned by this as a body is; all coordinates are "
            "along them."},
-          self.rotation, Turns{});
+          self.turns, Turns{});
     visit({"free", "",
            "These coordinates are not held. They say how far b, or a in the world, is moved along "
            "the axes and turned in their planes."},

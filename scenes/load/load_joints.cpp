@@ -1,10 +1,10 @@
 #include <unordered_set>
 
+#include "core/dynamics/constraints/make_joint.hpp"
 #include "core/error.hpp"
 #include "scenes/load/body_finder.hpp"
 #include "scenes/load/joint_keys.hpp"
 #include "scenes/load/load_parts.hpp"
-#include "scenes/load/make_joint.hpp"
 #include "scenes/load/weld_loops.hpp"
 
 namespace tesserae::scenes {
@@ -135,8 +135,9 @@ class JointLoader {
     }
 
     void append(TableReader& reader, JointTable& table, const Ends& ends) {
-        set_length(reader, table, scene_.bodies, ends.a, ends.b);
-        scene_.joints.push_back(make_joint(reader, table, scene_.bodies, ends.a, ends.b));
+        const auto fail = [&](const char* key, std::string_view what) { reader.fail(key, what); };
+        set_length(table, scene_.bodies, ends.a, ends.b, fail);
+        scene_.joints.push_back(make_joint(in_radians(table), scene_.bodies, ends.a, ends.b, fail));
         scene_.joint_names.push_back(table.name);
         // Welds that break may share a load in any way.
         if (table.type == JointType::kWeld && !table.breaks) require_chain(reader);

@@ -12,18 +12,13 @@
 #include <vector>
 
 #include "core/algebra/bivector.hpp"
+#include "core/ranges.hpp"
 #include "core/shape/room.hpp"
 #include "render/description.hpp"
 #include "scenes/load/error_list.hpp"
 #include "scenes/load/toml_declarations.hpp"
 
 namespace tesserae::scenes {
-
-/// Every real of a scene is at most this in size (metres, seconds, kg, ...), so that squares,
-/// fourth powers and their products stay far inside the range of double.
-constexpr double kLargest = 1e15;
-/// Every size that must be positive (radius, side, frame rate) is at least this.
-constexpr double kSmallest = 1e-15;
 
 /// A closed interval that a real must lie in.
 struct Interval {

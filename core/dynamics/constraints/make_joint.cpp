@@ -1,25 +1,24 @@
-#include "scenes/load/make_joint.hpp"
+#include "core/dynamics/constraints/make_joint.hpp"
+
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string>
+#include <utility>
 
-#include "core/error.hpp"
-
-namespace tesserae::scenes {
+namespace tesserae {
 namespace {
 
 /// A distance may differ from that of the anchors as placed by this part of it: what is left of
 /// decimals. The solver then takes the difference away.
 constexpr double kSameLength = 1e-6;
-constexpr double kDegree = std::numbers::pi / 180;
 
 bool is_line(JointType type) {
     return type == JointType::kDistance || type == JointType::kRope || type == JointType::kSpring;
 }
-
-/// The unit that a coordinate has in scene files, in that of the core.
-double unit_of(int coordinate) { return coordinate < kFirstAngle ? 1 : kDegree; }
 
 /// What is left of a direction orthogonal to the first columns of a matrix.
 Vec4 orthogonal_part(const Mat4& axes, int columns, const Vec4& direction) {
@@ -55,22 +54,22 @@ Rotor axes_along(std::span<const Vec4> directions) {
 /// Makes one joint: core's a and b, with the motion of b relative to a.
 class JointMaker {
   public:
-    JointMaker(TableReader& reader, const JointTable& table, const Bodies& bodies, BodyId a,
-               BodyId b)
-        : reader_(reader), table_(table), bodies_(bodies), of_world_(b == kWorld) {
+    JointMaker(const JointDescription& asked, const Bodies& bodies, BodyId a, BodyId b,
+               FailJoint fail)
+        : asked_(asked), bodies_(bodies), fail_(fail), of_world_(b == kWorld) {
         joint_.a = of_world_ ? kWorld : a;
         joint_.b = of_world_ ? a : b;
-        joint_.collide = table.collide;
-        if (!table.breaks) return;
-        joint_.break_force = table.breaks->force.value_or(kNoLimit);
-        joint_.break_torque = table.breaks->torque.value_or(kNoLimit);
+        joint_.collide = asked.collide;
+        if (!asked.breaks) return;
+        joint_.break_force = asked.breaks->force.value_or(kNoLimit);
+        joint_.break_torque = asked.breaks->torque.value_or(kNoLimit);
     }
 
     Joint made() {
-        if (is_line(table_.type))
+        if (is_line(asked_.type))
             add_line();
-        else if (table_.type == JointType::kPoint)
-            joint_.kind = PointJoint{on(joint_.a, table_.anchor), on(joint_.b, table_.anchor)};
+        else if (asked_.type == JointType::kPoint)
+            joint_.kind = PointJoint{on(joint_.a, asked_.anchor), on(joint_.b, asked_.anchor)};
         else
             add_frame();
         return std::move(joint_);
@@ -80,19 +79,19 @@ class JointMaker {
     Vec4 on(BodyId body, const Vec4& point) const { return point_in(placed(bodies_, body), point); }
 
     void add_line() {
-        const Vec4& at_a = of_world_ ? *table_.anchor_b : *table_.anchor_a;
-        const Vec4& at_b = of_world_ ? *table_.anchor_a : *table_.anchor_b;
+        const Vec4& at_a = of_world_ ? *asked_.anchor_b : *asked_.anchor_a;
+        const Vec4& at_b = of_world_ ? *asked_.anchor_a : *asked_.anchor_b;
         const Vec4 on_a = on(joint_.a, at_a), on_b = on(joint_.b, at_b);
-        joint_.kind = LineJoint{on_a, on_b, *table_.length};
-        if (table_.type == JointType::kDistance) return;
+        joint_.kind = LineJoint{on_a, on_b, *asked_.length};
+        if (asked_.type == JointType::kDistance) return;
         joint_.held = 0;
-        if (table_.type == JointType::kRope) {
+        if (asked_.type == JointType::kRope) {
             joint_.limits = {{0, -kNoLimit, 0}};
             return;
         }
         // Along the line, or where there is none the mean of all directions.
         double mass = mass_at(0);
-        const int size = *table_.length > 0 ? 1 : PointJoint::kSize;
+        const int size = *asked_.length > 0 ? 1 : PointJoint::kSize;
         if (size > 1) joint_.kind = PointJoint{on_a, on_b};
         if (at_a == at_b) {
             double responses = 0;
@@ -100,7 +99,7 @@ class JointMaker {
             mass = size / responses;
         }
         for (int i = 0; i < size; ++i)
-            joint_.drives.push_back(spring("frequency", table_.spring, mass, i));
+            joint_.drives.push_back(spring("frequency", asked_.spring, mass, i));
     }
 
     void add_frame() {
@@ -114,12 +113,11 @@ class JointMaker {
                        axes_in(joint_.a), axes_in(joint_.b)};
         for (int i = 0; i < kMostRows; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            const double unit = unit_of(i);
-            if (const auto& limits = table_.limits[at])
-                joint_.limits.push_back({i, unit * (*limits)[0], unit * (*limits)[1]});
-            if (const auto& spring_at = table_.springs[at])
+            if (const auto& limits = asked_.limits[at])
+                joint_.limits.push_back({i, (*limits)[0], (*limits)[1]});
+            if (const auto& spring_at = asked_.springs[at])
                 joint_.drives.push_back(spring("spring", *spring_at, mass_at(i), i));
-            if (const auto& motor_at = table_.motors[at])
+            if (const auto& motor_at = asked_.motors[at])
                 joint_.drives.push_back(motor(*motor_at, i));
         }
     }
@@ -132,23 +130,23 @@ class JointMaker {
     };
     Frame frame() const {
         const auto bit = [](int coordinate) { return 1U << coordinate; };
-        switch (table_.type) {
+        switch (asked_.type) {
             case JointType::kSlider: {
                 // A hyperplane has no centre.
                 const BodyId centre = bodies_.is_movable(joint_.b) ? joint_.b : joint_.a;
-                return {axes_along({&table_.axis, 1}), bodies_.position[centre], bit(kSliding)};
+                return {axes_along({&asked_.axis, 1}), bodies_.position[centre], bit(kSliding)};
             }
             case JointType::kHinge: {
-                const Vec4 sides[] = {table_.plane.first, table_.plane.second};
-                return {axes_along(sides), table_.anchor, bit(kTurning)};
+                const Vec4 sides[] = {asked_.plane.first, asked_.plane.second};
+                return {axes_along(sides), asked_.anchor, bit(kTurning)};
             }
             case JointType::kSwivel:
                 // The turnings in the planes yz, yw and zw leave x.
-                return {axes_along({&table_.axis, 1}), table_.anchor, bit(7) | bit(8) | bit(9)};
+                return {axes_along({&asked_.axis, 1}), asked_.anchor, bit(7) | bit(8) | bit(9)};
             case JointType::kGeneral:
-                return {rotor_of(table_.rotation), table_.anchor, table_.free};
+                return {asked_.rotation, asked_.anchor, asked_.free};
             default:
-                return {Rotor(), table_.anchor, 0};
+                return {Rotor(), asked_.anchor, 0};
         }
     }
 
@@ -168,9 +166,9 @@ class JointMaker {
         drive.stiffness = mass * rate * rate;
         drive.damping = 2 * *s.damping * mass * rate;
         if (!std::isfinite(drive.stiffness))
-            reader_.fail(key,
-                         "what is joined cannot move so, and has no frequency; expected a "
-                         "stiffness, or a body that is not fixed");
+            fail_(key,
+                  "what is joined cannot move so, and has no frequency; expected a stiffness, or a "
+                  "body that is not fixed");
         return drive;
     }
 
@@ -183,44 +181,45 @@ class JointMaker {
         } else {
             drive =
                 spring("motor", {m.frequency, m.damping, {}, {}}, mass_at(coordinate), coordinate);
-            drive.target = unit_of(coordinate) * *m.target;
+            drive.target = *m.target;
         }
         drive.most = m.max.value_or(kNoLimit);
         return drive;
     }
 
-    TableReader& reader_;
-    const JointTable& table_;
+    const JointDescription& asked_;
     const Bodies& bodies_;
+    FailJoint fail_;
     bool of_world_;
     Joint joint_;
 };
 
 }  // namespace
 
-void set_length(TableReader& reader, JointTable& table, const Bodies& bodies, BodyId a, BodyId b) {
-    if (!is_line(table.type)) return;
-    if (!table.anchor_a) table.anchor_a = bodies.position[a];
-    if (!table.anchor_b) table.anchor_b = bodies.position[b];
-    const double apart = stable_norm(*table.anchor_b - *table.anchor_a);
-    const bool is_given = table.length.has_value();
-    if (!is_given) table.length = apart;
-    const double length = *table.length, slack = kSameLength * length;
-    const std::string placed = fmt::format("the anchors are placed {} m apart", toml_text(apart));
-    const bool has_no_way = apart == 0 && length > 0 && table.type != JointType::kRope;
-    if (has_no_way || (length == 0 && table.type != JointType::kSpring))
-        reader.fail(table.type == JointType::kSpring ? "length" : "anchor_b",
-                    "both anchors are at one point, where a length has no direction; expected "
-                    "anchors that are apart");
-    if (table.type == JointType::kDistance && !(std::abs(length - apart) <= slack))
-        reader.fail("length", placed + "; expected this, or no length");
-    if (table.type == JointType::kRope && !(apart <= length + slack))
-        reader.fail("length", placed + "; expected no less");
+void set_length(JointDescription& joint, const Bodies& bodies, BodyId a, BodyId b, FailJoint fail) {
+    if (!is_line(joint.type)) return;
+    if (!joint.anchor_a) joint.anchor_a = bodies.position[a];
+    if (!joint.anchor_b) joint.anchor_b = bodies.position[b];
+    const double apart = stable_norm(*joint.anchor_b - *joint.anchor_a);
+    const bool is_given = joint.length.has_value();
+    if (!is_given) joint.length = apart;
+    const double length = *joint.length, slack = kSameLength * length;
+    const std::string placed = fmt::format("the anchors are placed {} m apart", apart);
+    const bool has_no_way = apart == 0 && length > 0 && joint.type != JointType::kRope;
+    if (has_no_way || (length == 0 && joint.type != JointType::kSpring))
+        fail(
+            joint.type == JointType::kSpring ? "length" : "anchor_b",
+            "both anchors are at one point, where a length has no direction; expected anchors that "
+            "are apart");
+    if (joint.type == JointType::kDistance && !(std::abs(length - apart) <= slack))
+        fail("length", placed + "; expected this, or no length");
+    if (joint.type == JointType::kRope && !(apart <= length + slack))
+        fail("length", placed + "; expected no less");
 }
 
-Joint make_joint(TableReader& reader, const JointTable& table, const Bodies& bodies, BodyId a,
-                 BodyId b) {
-    return JointMaker(reader, table, bodies, a, b).made();
+Joint make_joint(const JointDescription& joint, const Bodies& bodies, BodyId a, BodyId b,
+                 FailJoint fail) {
+    return JointMaker(joint, bodies, a, b, fail).made();
 }
 
-}  // namespace tesserae::scenes
+}  // namespace tesserae
