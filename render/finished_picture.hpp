@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tesserae {
@@ -31,8 +32,11 @@ namespace tesserae {
 /// Values are those that the image file holds, as floats: colours were rounded to half precision.
 class Picture {
   public:
-    /// Reads an image that tesserae has written: a frame of a film, or what write_image() wrote.
-    /// @throws InputError   it cannot be read, is damaged, or is no OpenEXR image of one part
+    /// Reads an image that tesserae has written: a frame of a film, or what write_image() wrote. Of
+    /// other images it takes the channels that have such names. Its preview is without exposure and
+    /// overlay.
+    /// @throws InputError   it cannot be read, is damaged, or is no OpenEXR image of one part with
+    ///                      such channels
     static Picture read(const std::filesystem::path& exr);
 
     int width() const;   ///< [pixels]
@@ -52,6 +56,10 @@ class Picture {
     /// @throws InputError   the picture has no such layer
     std::span<const float> layer(std::string_view name) const;
 
+    /// Returns a line for each thing that is wrong with the pixels: samples that were no number,
+    /// colours beyond what a file holds, light paths that were cut off.
+    const std::vector<std::string>& warnings() const;
+
     /// Writes an OpenEXR file, with the bytes that rendering into a file gives.
     /// @throws RunError   it cannot be written
     void write_image(const std::filesystem::path& exr) const;
@@ -62,6 +70,7 @@ class Picture {
 
     /// What is in it; only the renderer makes one.
     struct Inside;
+    /// @param inside   not null
     explicit Picture(std::shared_ptr<const Inside> inside) : inside_(std::move(inside)) {}
 
   private:

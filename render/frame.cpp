@@ -5,13 +5,18 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
 #include "render/file/exr_writer.hpp"
 #include "render/file/part_file.hpp"
 #include "render/file/preview.hpp"
+#include "render/picture_inside.hpp"
 #include "render/tile/tile_image.hpp"
 #include "render/tile/tiles.hpp"
 
@@ -78,6 +83,44 @@ void render_tiles(const FrameScene& scene, const Crop& window, int tile_size,
                                                         [&](Slot* slot) { write(*slot); }));
 }
 
+/// The bytes of an image's file: the header, tiles in the order of the calls, and between them the
+/// table that says where they are.
+class ImageInMemory {
+  public:
+    explicit ImageInMemory(const TilePacker& packer)
+        : bytes_(packer.file_header()), header_(bytes_.size()), offsets_(packer.tiles()) {}
+
+    void write(const PackedTile& tile) {
+        offsets_[tile.index] = bytes_.size();
+        bytes_.append(tile.bytes.data(), tile.bytes.size());
+    }
+    std::string finished() {
+        const std::size_t table = offsets_.size() * sizeof(std::uint64_t);
+        std::memcpy(bytes_.data() + header_ - table, offsets_.data(), table);
+        return std::move(bytes_);
+    }
+
+  private:
+    std::string bytes_;
+    std::size_t header_;
+    std::vector<std::uint64_t> offsets_;  ///< by rows
+};
+
+/// Copies a tile's values into a picture.
+void copy_values(const TileImage& tile, std::span<const ChannelPlace> places,
+                 tesserae::Picture::Inside& picture) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const ChannelPlace& place = places[i];
+        const auto [records, stride] = records_of(tile, place.record);
+        for (int y = tile.y0; y < tile.y1; ++y)
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                const char* value = records + tile.index(x, y) * stride + place.offset;
+                picture.value(i, x, y) = static_cast<float>(
+                    value_of(place.type, reinterpret_cast<const unsigned char*>(value)));
+            }
+    }
+}
+
 /// A whole part is there that would be made of the same; another is an error, unless it is to be
 /// replaced. A damaged one is made again.
 bool is_part_done(const PartInfo& info, const std::filesystem::path& file, bool overwrite) {
@@ -116,6 +159,34 @@ FrameStats render_frame(const Picture& picture, const FrameInfo& info,
     if (small) small->write(preview);
     image.finish();
     return stats;
+}
+
+FrameInMemory render_in_memory(const Picture& picture, const FrameInfo& info,
+                               const std::atomic<bool>& stop,
+                               FunctionRef<void(std::uint64_t done, std::uint64_t of)> tell) {
+    const Settings& settings = picture.settings;
+    const Crop window = settings.window();
+    const bool has_color = settings.channels.color;
+    const FrameScene scene(picture, has_color || settings.channels.light);
+    TilePacker packer(settings, window, info, picture.camera, scene.camera(), picture.mattes);
+    const std::vector<ChannelPlace> places = channel_places(settings);
+    FrameInMemory frame{std::make_shared<tesserae::Picture::Inside>(window, places), {}};
+    std::optional<Preview>& small = frame.picture->preview;
+    if (has_color) small.emplace(window, settings, picture.overlay);
+    ImageInMemory image(packer);
+    std::uint64_t done = 0;
+    render_tiles(
+        scene, window, settings.tile, {0, SIZE_MAX}, stop,
+        [&](const TileImage& tile) { return packer.pack(tile); },
+        [&](const Slot& slot) {
+            image.write(slot.packed);
+            copy_values(slot.image, places, *frame.picture);
+            if (small) small->add(slot.image);
+            frame.stats += slot.image.stats;
+            tell(++done, packer.tiles());
+        });
+    frame.picture->image = image.finished();
+    return frame;
 }
 
 std::optional<FrameStats> render_part(const Picture& picture, const FrameInfo& info,

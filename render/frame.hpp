@@ -1,9 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
+#include "core/function_ref.hpp"
+#include "render/finished_picture.hpp"
 #include "render/picture.hpp"
 
 namespace tesserae::render {
@@ -15,6 +19,20 @@ namespace tesserae::render {
 FrameStats render_frame(const Picture& picture, const FrameInfo& info,
                         const std::filesystem::path& exr, const std::filesystem::path& preview,
                         const std::atomic<bool>& stop);
+
+/// A frame in memory.
+struct FrameInMemory {
+    std::shared_ptr<tesserae::Picture::Inside> picture;
+    FrameStats stats;
+};
+
+/// Renders one frame into memory: the same pixels, and the same bytes of its files once they are
+/// written.
+/// @param tell(done, of)   is called after each tile, by one thread at a time; it may throw Stopped
+/// @throws Stopped, InputError   as render_frame()
+FrameInMemory render_in_memory(const Picture& picture, const FrameInfo& info,
+                               const std::atomic<bool>& stop,
+                               FunctionRef<void(std::uint64_t done, std::uint64_t of)> tell);
 
 /// Which run of a frame's tiles, in the order in which they are rendered: cut into `count` runs of
 /// equal length, to one tile.

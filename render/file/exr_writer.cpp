@@ -22,6 +22,7 @@
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
+#include "render/file/channel_places.hpp"
 #include "render/file/image_info.hpp"
 
 namespace tesserae::render {
@@ -59,97 +60,9 @@ class MemoryStream : public Imf::OStream {
     std::uint64_t position_ = 0;
 };
 
-/// What a tile holds of a pixel.
-enum class Record { kPixel, kLayers, kMattes };
-
-/// A channel of the file and where it lies in a pixel's record.
-struct ChannelPlace {
-    std::string name;
-    Imf::PixelType type;
-    std::size_t offset;
-    Record record = Record::kPixel;
-};
-
-/// The first pixel's record of a tile, and how far it is to the next one's.
-std::pair<const char*, std::size_t> records_of(const TileImage& tile, Record record) {
-    const auto bytes = [](const auto& records) {
-        return std::pair(reinterpret_cast<const char*>(records.data()), sizeof records[0]);
-    };
-    if (record == Record::kLayers) return bytes(tile.layers);
-    if (record == Record::kMattes) return bytes(tile.mattes);
-    return bytes(tile.pixels);
-}
-
-constexpr const char* kObjectMattes = "CryptoObject";
-constexpr const char* kMaterialMattes = "CryptoMaterial";
-
-/// Two ranks to a layer: CryptoObject00.R to .A, CryptoObject01.R...
-void add_mattes(const char* layer, std::size_t offset, std::vector<ChannelPlace>& places) {
-    for (std::size_t i = 0; i < 2 * MattePixel::kRanks; ++i)
-        places.push_back({fmt::format("{}{:02}.{}", layer, i / 4, "RGBA"[i % 4]), Imf::FLOAT,
-                          offset + i * sizeof(float), Record::kMattes});
-}
-
-void add_layers(const Settings& settings, std::vector<ChannelPlace>& places) {
-    const Channels& wanted = settings.channels;
-    const auto add = [&](bool want, Imf::PixelType type, std::size_t first,
-                         std::initializer_list<const char*> names) {
-        if (!want) return;
-        const std::size_t size = type == Imf::HALF ? sizeof(Imath::half) : sizeof(float);
-        for (const char* name : names) {
-            places.push_back({name, type, first, Record::kLayers});
-            first += size;
-        }
-    };
-    add(wanted.motion, Imf::FLOAT, offsetof(LayerPixel, forward), {"forward.u", "forward.v"});
-    add(wanted.motion, Imf::FLOAT, offsetof(LayerPixel, backward), {"backward.u", "backward.v"});
-    add(wanted.zplanar, Imf::FLOAT, offsetof(LayerPixel, plane_depth), {"Zplanar"});
-    add(wanted.normal3, Imf::FLOAT, offsetof(LayerPixel, slice_normal),
-        {"Nslice.X", "Nslice.Y", "Nslice.Z"});
-    add(wanted.light, Imf::HALF, offsetof(LayerPixel, direct),
-        {"direct.R", "direct.G", "direct.B"});
-    add(wanted.light, Imf::HALF, offsetof(LayerPixel, indirect),
-        {"indirect.R", "indirect.G", "indirect.B"});
-    add(settings.has_ghosts(), Imf::HALF, offsetof(LayerPixel, ghost),
-        {"ghost.R", "ghost.G", "ghost.B", "ghost.A"});
-}
-
-std::vector<ChannelPlace> places_of(const Settings& settings) {
-    const Channels& wanted = settings.channels;
-    constexpr std::size_t kColor = offsetof(Pixel, color), kAlbedo = offsetof(Pixel, albedo);
-    constexpr std::size_t kNormal = offsetof(Pixel, normal), kPosition = offsetof(Pixel, position);
-    std::vector<ChannelPlace> places;
-    const auto add = [&](bool want, std::initializer_list<ChannelPlace> list) {
-        if (!want) return;
-        for (const ChannelPlace& place : list) places.push_back(place);
-    };
-    add(wanted.color, {{"R", Imf::HALF, kColor},
-                       {"G", Imf::HALF, kColor + 2},
-                       {"B", Imf::HALF, kColor + 4},
-                       {"A", Imf::HALF, offsetof(Pixel, alpha)}});
-    add(wanted.depth, {{"Z", Imf::FLOAT, offsetof(Pixel, depth)}});
-    add(wanted.albedo, {{"albedo.R", Imf::HALF, kAlbedo},
-                        {"albedo.G", Imf::HALF, kAlbedo + 2},
-                        {"albedo.B", Imf::HALF, kAlbedo + 4}});
-    add(wanted.normal, {{"N.X", Imf::FLOAT, kNormal},
-                        {"N.Y", Imf::FLOAT, kNormal + 4},
-                        {"N.Z", Imf::FLOAT, kNormal + 8},
-                        {"N.W", Imf::FLOAT, kNormal + 12}});
-    add(wanted.position, {{"P.X", Imf::FLOAT, kPosition},
-                          {"P.Y", Imf::FLOAT, kPosition + 4},
-                          {"P.Z", Imf::FLOAT, kPosition + 8},
-                          {"P.W", Imf::FLOAT, kPosition + 12}});
-    add(wanted.variance, {{"variance.R", Imf::FLOAT, offsetof(Pixel, variance)},
-                          {"variance.G", Imf::FLOAT, offsetof(Pixel, variance) + 4},
-                          {"variance.B", Imf::FLOAT, offsetof(Pixel, variance) + 8}});
-    add(wanted.samples, {{"samples", Imf::UINT, offsetof(Pixel, samples)}});
-    add(wanted.id, {{"objectid", Imf::UINT, offsetof(Pixel, id)}});
-    add_layers(settings, places);
-    if (wanted.cryptomatte) {
-        add_mattes(kObjectMattes, offsetof(MattePixel, objects), places);
-        add_mattes(kMaterialMattes, offsetof(MattePixel, materials), places);
-    }
-    return places;
+Imf::PixelType imf_type(PixelType type) {
+    constexpr Imf::PixelType kTypes[] = {Imf::HALF, Imf::FLOAT, Imf::UINT};
+    return kTypes[static_cast<std::size_t>(type)];
 }
 
 Imf::Compression compression_of(Compression compression) {
@@ -196,8 +109,8 @@ Imf::Header header_of(const Settings& settings, const Crop& window, const FrameI
     header.lineOrder() = Imf::RANDOM_Y;
     const auto side = static_cast<unsigned>(settings.tile);
     header.setTileDescription(Imf::TileDescription(side, side, Imf::ONE_LEVEL));
-    for (const ChannelPlace& place : places_of(settings))
-        header.channels().insert(place.name, Imf::Channel(place.type));
+    for (const ChannelPlace& place : channel_places(settings))
+        header.channels().insert(place.name, Imf::Channel(imf_type(place.type)));
     Imf::addChromaticities(header, Imf::Chromaticities());
     Imf::addFramesPerSecond(header, Imf::guessExactFps(settings.frames_per_second));
 
@@ -260,10 +173,10 @@ struct TilePacker::Packers {
 TilePacker::TilePacker(const Settings& settings, const Crop& window, const FrameInfo& info,
                        const CameraDescription& description, const Camera& camera,
                        const Mattes* mattes) {
-    if (places_of(settings).empty())
+    if (channel_places(settings).empty())
         throw InputError("render.channels = []: an image needs at least one channel");
     packers_ = std::make_unique<Packers>(
-        header_of(settings, window, info, description, camera, mattes), places_of(settings));
+        header_of(settings, window, info, description, camera, mattes), channel_places(settings));
 }
 
 TilePacker::~TilePacker() = default;
@@ -307,8 +220,8 @@ PackedTile TilePacker::pack(const TileImage& tile) {
     for (const ChannelPlace& place : packers_->places) {
         const auto [records, stride] = records_of(tile, place.record);
         buffer.insert(place.name,
-                      Imf::Slice::Make(place.type, records + place.offset, corner, tile.width(),
-                                       tile.y1 - tile.y0, stride,
+                      Imf::Slice::Make(imf_type(place.type), records + place.offset, corner,
+                                       tile.width(), tile.y1 - tile.y0, stride,
                                        stride * static_cast<std::size_t>(tile.width())));
     }
     Packer& packer = packers_->of_thread.local();
