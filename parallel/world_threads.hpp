@@ -7,7 +7,8 @@
 namespace tesserae {
 
 /// Makes threads on which worlds are stepped: `World world({}, threads(8))`. Several worlds may
-/// share them, also while they are stepped at the same time.
+/// share them, also while they are stepped at the same time. Where several such objects live at
+/// once, the least count limits all.
 /// @param count   the calling thread included; 0: as many as the cores that this process may use
 /// @throws InputError   count < 0
 std::shared_ptr<Workers> threads(int count = 0);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/world/world.hpp"
@@ -54,7 +55,7 @@ struct PictureOptions {
 /// How Scene::film() works.
 struct FilmOptions {
     int threads = 0;               ///< as above
-    std::vector<int> frames = {};  ///< ascending; empty: all
+    std::vector<int> frames = {};  ///< their numbers; empty: all
     bool overwrite = false;  ///< frames of another scene, or that look otherwise, are replaced
     ProgressFunction progress = {};           ///< of frames
     const std::atomic<bool>* stop = nullptr;  ///< as above
@@ -103,6 +104,7 @@ class Scene {
     int frames() const;  ///< number of frames, at least 1
     double frames_per_second() const;
     /// Returns the time of a frame [s].
+    /// @throws InputError   the scene has no such frame
     double time_of_frame(int frame) const;
 
     std::size_t bodies() const;  ///< number of bodies
@@ -135,19 +137,23 @@ class Scene {
     /// Renders a world as it is now, with the scene's camera at the world's time, its lights and
     /// settings. A body looks like the scene's body of the same number, whatever shape it has; one
     /// that the scene does not have is of the material "default": a grey of albedo 0.8. While the
-    /// shutter is open, and for vectors of motion, bodies go on at their velocities.
+    /// shutter is open, and for vectors of motion, bodies go on at their velocities. The picture
+    /// has no overlay.
     /// @throws InputError   the camera follows a body that the world does not have; a shape cannot
     ///                      be shown
     Picture render(const World& world, const PictureOptions& options = {}) const;
     /// Renders a frame, with the pixels that film() gives.
-    /// @param trajectory   of the scene's motion; none: bodies are as at time 0
-    /// @throws InputError   the scene has no such frame; the trajectory is of another motion or
-    ///                      lacks a step that the frame needs
+    /// @param trajectory   of the scene's motion; none where nothing moves, or has not yet
+    /// @throws InputError   the scene has no such frame; there is no trajectory, or it is of
+    /// another
+    ///                      motion or lacks a step that the frame needs
     Picture render_frame(int frame, const std::filesystem::path& trajectory = {},
                          const PictureOptions& options = {}) const;
     /// Renders frames into a folder, as `tesserae render` does: images in `frames`, previews in
     /// `preview`. Frames that are there are kept. What is odd (samples that are no number, damaged
     /// frames) is told on standard error.
+    /// @param trajectory   of the scene's motion; none: where bodies move it is made first, as
+    ///                     `folder`/trajectory.h5
     /// @throws InputError   as render_frame(); the folder holds another scene's frames
     /// @throws RunError     a file cannot be written
     /// @throws Stopped      the work was asked to stop; finished frames are kept

@@ -1,8 +1,9 @@
 #include "scenes/film/film.hpp"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -10,121 +11,14 @@
 #include "render/file/copied_frame.hpp"
 #include "render/picture_needs.hpp"
 #include "scenes/farm/join.hpp"
-#include "scenes/film/coast.hpp"
-#include "scenes/film/film_camera.hpp"
-#include "scenes/film/mattes.hpp"
-#include "scenes/film/poses.hpp"
+#include "scenes/film/shots.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
-#include "scenes/process/signals.hpp"
-#include "scenes/process/version.hpp"
-#include "scenes/timeline.hpp"
 
 namespace tesserae::scenes {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The bodies' names by object id (body number + 1), as a JSON object: "first-last" for lattices.
-std::string id_names(const Scene& scene) {
-    // Enough for a person and for mattes; a header is read whole by every viewer.
-    constexpr std::size_t kMaxNames = 10'000;
-    auto names = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < std::min(scene.names.size(), kMaxNames); ++i) {
-        const NamedBodies& n = scene.names[i];
-        const std::string ids = n.count > 1 ? fmt::format("{}-{}", n.first + 1, n.first + n.count)
-                                            : fmt::format("{}", n.first + 1);
-        names[ids] = n.name;
-    }
-    return names.dump();
-}
-
-/// What of a scene changes from frame to frame.
-struct Moment : render::Neighbour {
-    bool looks_like(const Moment& other, const Scene& scene) const {
-        if (!(camera == other.camera)) return false;
-        for (BodyId id = 0; id < bodies.size(); ++id)
-            if (scene.appearance[bodies.type[id]].visible &&
-                (bodies.position[id] != other.bodies.position[id] ||
-                 !(bodies.rotor[id] == other.bodies.rotor[id])))
-                return false;
-        return true;
-    }
-};
-
-/// What a frame shows: the shutter opens and, if it is open for any time, closes.
-struct Exposure {
-    Moment opening;
-    std::vector<render::ShutterMoment> path;
-    std::optional<Moment> after, before;  ///< the frames beside, for vectors of motion
-
-    Exposure(const Scene& scene, FilmCamera& camera, Poses& poses, int frame)
-        : opening(moment(camera, poses, frame_instant(scene, frame))) {
-        if (scene.render.channels.motion) {
-            after = neighbour(scene, camera, poses, frame, 1);
-            before = neighbour(scene, camera, poses, frame, -1);
-        }
-        if (scene.camera.shutter > 0) open_shutter(scene, camera, poses, frame);
-    }
-
-    /// But for what is random in the picture.
-    bool looks_like(const Exposure& other, const Scene& scene) const {
-        const auto like = [&](const std::optional<Moment>& a, const std::optional<Moment>& b) {
-            return a && b ? a->looks_like(*b, scene) : !a && !b;
-        };
-        return opening.looks_like(other.opening, scene) && path.empty() && other.path.empty() &&
-               like(after, other.after) && like(before, other.before);
-    }
-    render::Picture picture(const Scene& scene, int frame) const {
-        return {opening.bodies,
-                scene.appearance,
-                scene.materials,
-                opening.camera,
-                scene.lights,
-                scene.render,
-                path,
-                frame,
-                after ? &*after : nullptr,
-                before ? &*before : nullptr};
-    }
-
-  private:
-    void open_shutter(const Scene& scene, FilmCamera& camera, Poses& poses, int frame) {
-        const double begin = frame_instant(scene, frame).time;
-        const double rate = scene.physics ? scene.physics->steps_per_second : 1;
-        bool is_still = true;
-        const auto add = [&](const FrameInstant& instant) {
-            Moment at = moment(camera, poses, instant);
-            is_still = is_still && at.looks_like(opening, scene);
-            path.push_back({instant.time - begin, std::move(at.bodies), at.camera});
-        };
-        for (const std::uint64_t step : shutter_steps(scene, frame))
-            if (poses.has(step)) add({static_cast<double>(step) / rate, step, 0});
-        // Past the last step all stands still.
-        const FrameInstant close = closing_instant(scene, frame);
-        const double last = static_cast<double>(step_count(scene)) / rate;
-        if (close.step == step_count(scene) && begin < last && last < close.time)
-            add({last, close.step, 0});
-        add(close);
-        if (is_still) path.clear();
-    }
-
-    /// The frame `by` frames on. Where there is none the bodies of this one go on at their
-    /// velocities.
-    Moment neighbour(const Scene& scene, FilmCamera& camera, Poses& poses, int frame,
-                     int by) const {
-        const FrameInstant at = frame_instant(scene, frame + by);
-        if (has_frame(scene, frame + by)) return moment(camera, poses, at);
-        Moment coasting = {{opening.bodies, {}}};
-        coast(coasting.bodies, by / scene.render.frames_per_second);
-        coasting.camera = camera.at(at.time, coasting.bodies);
-        return coasting;
-    }
-    static Moment moment(FilmCamera& camera, Poses& poses, const FrameInstant& instant) {
-        const Bodies& bodies = poses.at(instant);
-        return {{bodies, camera.at(instant.time, bodies)}};
-    }
-};
 
 /// A finished frame. The next one may look the same: a still camera over a scene at rest, and
 /// nothing random in the picture or the noise locked.
@@ -132,10 +26,6 @@ struct Shown {
     Exposure exposure;
     render::FrameFiles files;
 };
-
-}  // namespace
-
-namespace {
 
 /// That renders one pixel of a frame.
 std::string command_for(const Scene& scene, int frame, const render::SampleNumber& s) {
@@ -178,13 +68,21 @@ std::string cut_paths_text(const render::FrameStats& stats, const Scene& scene, 
         scene.render.specular_bounces);
 }
 
+std::vector<std::string> picture_warnings(const render::FrameStats& stats, const Scene& scene,
+                                          int frame) {
+    std::vector<std::string> warnings = {invalid_samples_text(stats, scene, frame),
+                                         clamped_pixels_text(stats, scene, frame),
+                                         cut_paths_text(stats, scene, frame)};
+    std::erase(warnings, "");
+    return warnings;
+}
+
 FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::path& trajectory,
                 const fs::path& folder, Replace replace, bool quiet,
-                std::optional<render::FramePart> part) {
+                std::optional<render::FramePart> part, const Watch& watch) {
     const auto begin = std::chrono::steady_clock::now();
     const bool is_changed = !require_folder_of(scene, folder, replace).empty();
-    Poses poses(scene, frames, trajectory);
-    FilmCamera camera(scene, &poses);
+    Shots shots(scene, frames, trajectory);
 
     FilmReport report;
     report.frames = folder / "frames";
@@ -192,67 +90,48 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
     create_folder(folder / "preview");
     if (!fs::exists(folder / kSceneFile) || is_changed || replace == Replace::kAll)
         write_file(folder / kSceneFile, scene.effective);
+    shots.name_mattes(report.frames);
 
-    render::FrameInfo info;
-    info.scene_name = scene.name;
-    info.motion_version = poses.motion_version();
-    info.program_version = program_version();
-    info.id_names = id_names(scene);
-    std::optional<render::Mattes> mattes;
-    if (scene.render.channels.cryptomatte) mattes = mattes_of(scene, report.frames);
-
-    const OverlayPainter painter(scene);
     const int parts = parts_of_frame(scene);
     std::optional<Shown> shown;
     Progress progress("rendering", "frames", frames.size(), quiet);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        info.frame = frames[i];
-        info.scene_hash =
-            hash_of_frame(scene, info.frame, info.picture_version, info.motion_version);
-        info.time = frame_instant(scene, frames[i]).time;
-        const std::string stem = fmt::format("{}.{:04}", scene.name, info.frame);
+        const int frame = frames[i];
+        const std::string stem = fmt::format("{}.{:04}", scene.name, frame);
         const render::FrameFiles files = {report.frames / (stem + ".exr"),
                                           folder / "preview" / (stem + ".png")};
         report.preview = files.preview;
-        if (is_done(scene, info, files, replace, painter)) {
+        if (is_done(scene, shots.info(frame), files, replace, shots.painter())) {
             progress.start_at(++report.kept);
             if (parts > 1) remove_parts(files.exr, parts);
+            watch.tell(i + 1, frames.size());
             continue;
         }
-        Exposure exposure(scene, camera, poses, info.frame);
-        render::Picture picture = exposure.picture(scene, info.frame);
-        if (mattes) picture.mattes = &*mattes;
-        std::vector<render::Stamp> overlay;
-        if (!painter.is_empty())
-            overlay = painter.stamps(info.frame, SlicePose(exposure.opening.camera));
-        picture.overlay = overlay;
+        Shot shot = shots.shot(frame);
+        const render::Picture picture = shots.picture(shot);
         const auto warn = [&](const render::FrameStats& stats) {
-            for (const std::string& text : {invalid_samples_text(stats, scene, info.frame),
-                                            clamped_pixels_text(stats, scene, info.frame),
-                                            cut_paths_text(stats, scene, info.frame)})
-                if (!text.empty()) tell(text);
+            for (const std::string& text : picture_warnings(stats, scene, frame)) tell(text);
             report.stats += stats;
         };
+        const bool replaces = replace != Replace::kNothing;
         if (part) {
-            const auto stats = render_one_part(picture, info, *part, files.exr,
-                                               replace != Replace::kNothing, stop_requested());
+            const auto stats =
+                render_one_part(picture, shot.info, *part, files.exr, replaces, *watch.stop);
             if (stats) warn(*stats), ++report.parts;
-            progress.update(i + 1);
-            continue;
-        }
-        if (shown && !render::needs_of(picture).moving_noise &&
-            exposure.looks_like(shown->exposure, scene)) {
-            render::copy_frame(shown->files, painter.is_empty(), picture, info, files);
+        } else if (shown && !render::needs_of(picture).moving_noise &&
+                   shot.exposure.looks_like(shown->exposure, scene)) {
+            render::copy_frame(shown->files, shots.painter().is_empty(), picture, shot.info, files);
             ++report.copied;
         } else {
-            warn(parts > 1 ? render_in_parts(picture, info, files, parts,
-                                             replace != Replace::kNothing, stop_requested())
-                           : render::render_frame(picture, info, files.exr, files.preview,
-                                                  stop_requested()));
+            warn(parts > 1
+                     ? render_in_parts(picture, shot.info, files, parts, replaces, *watch.stop)
+                     : render::render_frame(picture, shot.info, files.exr, files.preview,
+                                            *watch.stop));
             ++report.rendered;
-            shown.emplace(Shown{std::move(exposure), files});
+            shown.emplace(Shown{std::move(shot.exposure), files});
         }
         progress.update(i + 1);
+        watch.tell(i + 1, frames.size());
     }
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

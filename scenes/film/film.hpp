@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "render/frame.hpp"
 #include "scenes/film/film_folder.hpp"
+#include "scenes/process/watch.hpp"
 #include "scenes/scene.hpp"
 
 namespace tesserae::scenes {
@@ -33,6 +35,10 @@ std::string cut_paths_text(const render::FrameStats& stats, const Scene& scene, 
 /// again. Empty if there are none.
 std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& scene, int frame);
 
+/// Those of these texts that are not empty.
+std::vector<std::string> picture_warnings(const render::FrameStats& stats, const Scene& scene,
+                                          int frame);
+
 /// Renders frames of a still (no trajectory) or of a trajectory into folder/frames/NAME.0000.exr
 /// and folder/preview/NAME.0000.png. Frames that are already there are kept. Runs on the threads of
 /// the caller's parallel::Threads.
@@ -40,9 +46,10 @@ std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& sc
 /// @throws InputError   the folder holds another scene's frames that may not be replaced; the
 ///                      trajectory is of another motion or lacks steps that the frames need
 /// @throws RunError     a file cannot be written
-/// @throws Stopped      after a signal; finished frames are kept
+/// @throws Stopped      `watch` says so; finished frames are kept
 FilmReport film(const Scene& scene, const std::vector<int>& frames,
                 const std::filesystem::path& trajectory, const std::filesystem::path& folder,
-                Replace replace, bool quiet, std::optional<render::FramePart> part = {});
+                Replace replace, bool quiet, std::optional<render::FramePart> part = {},
+                const Watch& watch = {});
 
 }  // namespace tesserae::scenes

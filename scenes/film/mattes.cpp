@@ -15,11 +15,12 @@ namespace {
 /// A header is read whole by every viewer.
 constexpr std::size_t kMostInHeader = 10'000;
 
-/// @param file   of the manifest where the header is too small for it
-render::MatteNames manifest_of(const nlohmann::json& names, const std::filesystem::path& file) {
-    if (names.size() <= kMostInHeader) return {names.dump(), false};
-    write_file(file, names.dump(0));
-    return {file.filename().string(), true};
+/// @param folder, file   of the manifest where the header is too small for it
+render::MatteNames manifest_of(const nlohmann::json& names, const std::filesystem::path& folder,
+                               const std::string& file) {
+    if (names.size() <= kMostInHeader || folder.empty()) return {names.dump(), false};
+    write_file(folder / file, names.dump(0));
+    return {file, true};
 }
 
 std::string in_hex(std::uint32_t id) { return fmt::format("{:08x}", id); }
@@ -49,8 +50,8 @@ render::Mattes mattes_of(const Scene& scene, const std::filesystem::path& folder
                 add(bodies.first + i, fmt::format("{}.{}", bodies.name, i));
         else
             add(bodies.first, bodies.name);
-    mattes.object_names = manifest_of(objects, folder / (scene.name + ".CryptoObject.json"));
-    mattes.material_names = manifest_of(materials, folder / (scene.name + ".CryptoMaterial.json"));
+    mattes.object_names = manifest_of(objects, folder, scene.name + ".CryptoObject.json");
+    mattes.material_names = manifest_of(materials, folder, scene.name + ".CryptoMaterial.json");
     return mattes;
 }
 

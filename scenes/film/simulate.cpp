@@ -14,7 +14,6 @@
 #include "parallel/parallel_stepper.hpp"
 #include "scenes/process/messages.hpp"
 #include "scenes/process/progress.hpp"
-#include "scenes/process/signals.hpp"
 #include "scenes/process/version.hpp"
 #include "scenes/timeline.hpp"
 #include "scenes/trajectory/joint_datasets.hpp"
@@ -140,8 +139,8 @@ class SlowSteps {
 /// Stores the rows that are missing of those wanted. Every row holds a state and what the step that
 /// led to it found; the first, before any step, found nothing.
 void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
-                std::span<const std::uint64_t> steps, SimulateReport& report, bool quiet,
-                parallel::Trace* trace) {
+                std::span<const std::uint64_t> steps, const SimulateOptions& options,
+                SimulateReport& report) {
     Bodies start = scene.bodies;
     std::uint64_t step = 0;
     StepMemory memory;
@@ -155,17 +154,17 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
     if (plan.moves) {
         world.emplace(make_simulation(std::move(start), *scene.physics, scene.joints));
         world->memory() = std::move(memory);
-        world->set_trace(trace);
+        world->set_trace(options.trace);
     }
     const Bodies& bodies = world ? world->bodies() : start;
 
-    Progress progress("simulating", "steps", std::max(step, steps.back()), quiet);
+    Progress progress("simulating", "steps", std::max(step, steps.back()), options.quiet);
     progress.start_at(step);
-    SlowSteps slow(scene, quiet);
+    SlowSteps slow(scene, options.quiet);
     StepReport found;
     for (std::uint64_t row = writer.rows(); row < steps.size(); ++row) {
         for (; step < steps[row]; ++step) {
-            if (stop_requested()) throw Stopped();
+            options.watch.look();
             if (world) {
                 const auto begin = std::chrono::steady_clock::now();
                 found = checked_step(scene, *world);
@@ -173,6 +172,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
                 slow.look_at(took.count(), bodies);
             }
             progress.update(step + 1);
+            options.watch.tell(step + 1, steps.back());
         }
         StepFacts facts = facts_of(scene, step, found, bodies);
         facts.joints = joint_facts_of(scene, bodies, world ? &*world : nullptr);
@@ -269,8 +269,7 @@ SimulateReport simulate(const Scene& scene, const Plan& plan, const fs::path& fi
     TrajectoryWriter writer(file, header_of(scene, options, steps.back()), steps,
                             options.overwrite);
     if (!writer.note().empty()) tell(writer.note());
-    store_rows(scene, plan, writer, std::span(steps).first(count), report, options.quiet,
-               options.trace);
+    store_rows(scene, plan, writer, std::span(steps).first(count), options, report);
     writer.finish();
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -6,6 +6,7 @@
 
 #include "parallel/trace.hpp"
 #include "scenes/plan/plan.hpp"
+#include "scenes/process/watch.hpp"
 #include "scenes/scene.hpp"
 
 namespace tesserae::scenes {
@@ -51,6 +52,7 @@ struct SimulateOptions {
     bool quiet = false;
     parallel::Trace* trace = nullptr;  ///< records the stages of every step that is taken
     const char* creator = "tesserae";  ///< what a new file says that it was made by
+    Watch watch = {};                  ///< of steps
 };
 
 /// Moves the scene's bodies and stores their states in `file`. A whole file of the same motion and
@@ -63,7 +65,7 @@ struct SimulateOptions {
 /// than the scene's,
 ///                      and not `overwrite`
 /// @throws RunError     a body left the finite range, or the file cannot be written
-/// @throws Stopped      after a signal; what is stored is kept
+/// @throws Stopped      the watch says so; what is stored is kept
 SimulateReport simulate(const Scene& scene, const Plan& plan, const std::filesystem::path& file,
                         const SimulateOptions& options);
 

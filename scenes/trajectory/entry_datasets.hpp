@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "scenes/trajectory/hdf5.hpp"
 
@@ -29,5 +30,14 @@ hdf5::Handle create_entries(hid_t group, const std::string& name, hid_t type, st
     }
     return dataset;
 }
+
+/// Reads a text of a fixed length of each of so many things, without the zeros that fill it up.
+/// @param path   of the group, for messages
+/// @throws hdf5::Failure   it has another type or shape, or more than its file can hold
+std::vector<std::string> read_texts(hid_t group, const std::string& name, const std::string& path,
+                                    std::uint64_t entries, std::uint64_t file_bytes);
+/// The same of a real.
+std::vector<double> read_reals(hid_t group, const std::string& name, const std::string& path,
+                               std::uint64_t entries, std::uint64_t file_bytes);
 
 }  // namespace tesserae::scenes

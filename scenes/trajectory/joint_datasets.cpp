@@ -35,23 +35,9 @@ Handle create_joint_texts(hid_t group, const std::string& name,
 /// Reads a text of each of so many joints.
 void read_joint_texts(const Handle& group, const std::string& name, std::uint64_t file_bytes,
                       std::vector<JointDescription>& joints, std::string JointDescription::*text) {
-    const std::string path = std::string(kJoints) + "/" + name;
-    const auto require = [&](bool good, const char* what) {
-        if (!good) throw hdf5::Failure(path + ": " + what);
-    };
-    const Handle dataset = hdf5::open_dataset(group.get(), name);
-    const Handle type(H5Dget_type(dataset.get()), H5Tclose);
-    require(H5Tget_class(type.get()) == H5T_STRING && checked(H5Tis_variable_str(type.get())) == 0,
-            "is not of texts of a fixed length");
-    const DatasetStorage storage = checked_storage(dataset, path, file_bytes);
-    require(storage.extent.size() == 1 && storage.extent[0] == joints.size(), "has another shape");
-    const std::size_t width = H5Tget_size(type.get());
-    std::string all(joints.size() * width, '\0');
-    hdf5::read_rows(dataset, 0, joints.size(), type.get(), all.data());
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        const std::string entry = all.substr(i * width, width);
-        joints[i].*text = entry.substr(0, entry.find('\0'));
-    }
+    std::vector<std::string> texts =
+        read_texts(group.get(), name, kJoints, joints.size(), file_bytes);
+    for (std::size_t i = 0; i < joints.size(); ++i) joints[i].*text = std::move(texts[i]);
 }
 
 template <class Pointer, class Facts>

@@ -150,6 +150,10 @@ class TrajectoryReader {
     const std::vector<std::uint64_t>& steps() const;  ///< ascending
     const std::vector<double>& times() const;         ///< [s]
 
+    /// Each body's name and mass [kg]. Files of older programs have none, which is an error.
+    std::vector<std::string> names() const;
+    std::vector<double> masses() const;
+
     /// Sets position, rotor, velocity and angular velocity; the bodies must be as many as the
     /// file's. Values that are not finite, or rotors not of length 1, are an error.
     void read_row(std::uint64_t row, Bodies& bodies) const;

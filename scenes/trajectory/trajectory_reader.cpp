@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "scenes/trajectory/entry_datasets.hpp"
 #include "scenes/trajectory/trajectory.hpp"
 #include "scenes/trajectory/trajectory_layout.hpp"
 
@@ -19,6 +20,7 @@ constexpr double kRotorLength = 1e-6;
 
 struct TrajectoryReader::File {
     fs::path path;
+    std::uint64_t bytes = 0;
     TrajectoryHeader header;
     std::vector<std::uint64_t> steps;
     std::vector<double> times;
@@ -42,7 +44,7 @@ struct TrajectoryReader::File {
 };
 
 void TrajectoryReader::File::open() {
-    const std::uint64_t bytes = checked_file_bytes(path);
+    bytes = checked_file_bytes(path);
     file = hdf5::open_file(path, false);
     header = read_header(file, bytes);
     data = open_datasets(file, header.bodies, header.joints.size(), bytes, Opened::kToRead);
@@ -72,6 +74,24 @@ std::uint64_t TrajectoryReader::rows() const { return file_->steps.size(); }
 const std::vector<std::uint64_t>& TrajectoryReader::steps() const { return file_->steps; }
 
 const std::vector<double>& TrajectoryReader::times() const { return file_->times; }
+
+std::vector<std::string> TrajectoryReader::names() const {
+    std::vector<std::string> names;
+    file_->reading([&] {
+        const hdf5::Handle group = hdf5::open_group(file_->file.get(), kBodies);
+        names = read_texts(group.get(), "name", kBodies, file_->header.bodies, file_->bytes);
+    });
+    return names;
+}
+
+std::vector<double> TrajectoryReader::masses() const {
+    std::vector<double> masses;
+    file_->reading([&] {
+        const hdf5::Handle group = hdf5::open_group(file_->file.get(), kBodies);
+        masses = read_reals(group.get(), "mass", kBodies, file_->header.bodies, file_->bytes);
+    });
+    return masses;
+}
 
 void TrajectoryReader::read_row(std::uint64_t row, Bodies& bodies) const {
     TSR_ASSERT(row < rows() && bodies.size() == file_->header.bodies);
