@@ -42,8 +42,6 @@ BallTree::BallTree(const Bodies& bodies) {
 /// Sets a node's box, and halves the node at the middle of its widest axis if it is no leaf.
 void BallTree::split(std::uint32_t number, const Bodies& bodies, const std::vector<double>& radii) {
     Node node = nodes_[number];
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    node.box = {Vec4::Constant(kInfinity), Vec4::Constant(-kInfinity)};
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
         const BodyId id = order_[i];
         // A ray that grazes the ball must not miss the box by a rounding.

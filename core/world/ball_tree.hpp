@@ -14,7 +14,8 @@ namespace tesserae {
 class BallTree {
   public:
     struct Box {
-        Vec4 low, high;
+        Vec4 low = Vec4::Constant(std::numeric_limits<double>::infinity());
+        Vec4 high = Vec4::Constant(-std::numeric_limits<double>::infinity());
 
         /// Returns the distance of a point [m], 0 inside.
         double distance(const Vec4& point) const {

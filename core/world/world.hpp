@@ -167,8 +167,9 @@ class World {
     ///                      bodies otherwise
     static World load(std::string_view bytes, std::shared_ptr<Workers> workers = {});
 
+    class Inside;  ///< no public header says what it is
+
   private:
-    class Inside;
     friend World make_world(Simulation simulation, std::shared_ptr<Workers> workers);
     explicit World(std::unique_ptr<Inside> inside);
 
