@@ -7,7 +7,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "install: $*" >&2; exit 1; }
 
-"$cmake" --install "$build" --prefix "$folder/local" >/dev/null
+"$cmake" --install "$build" --prefix "$folder/local" --component program >/dev/null
 cat >"$folder/expected" <<'FILES'
 bin/tesserae
 share/bash-completion/completions/tesserae
@@ -19,6 +19,28 @@ share/zsh/site-functions/_tesserae
 FILES
 (cd "$folder/local" && find . -type f -printf '%P\n') | LC_ALL=C sort >"$folder/found"
 diff "$folder/expected" "$folder/found" || fail "other files than expected"
+
+# The libraries: beside these, the headers that the public ones include.
+"$cmake" --install "$build" --prefix "$folder/development" --component development >/dev/null
+type=$(sed -n 's/^CMAKE_BUILD_TYPE:STRING=//p' "$build/CMakeCache.txt" | tr '[:upper:]' '[:lower:]')
+{
+    for name in bivector body error joint picture report rotor scene settings shape threads \
+        trajectory vector world; do
+        echo "include/tesserae/$name.hpp"
+    done
+    for part in config config-version core core-$type parallel parallel-$type render render-$type \
+        scenes scenes-$type; do
+        echo "LIB/cmake/tesserae/tesserae-$part.cmake"
+    done
+    for room in core parallel render scenes; do echo "LIB/libtesserae_$room.a"; done
+    echo share/doc/tesserae-dev/copyright
+} | LC_ALL=C sort >"$folder/expected"
+(cd "$folder/development" && find . -type f -printf '%P\n') |
+    grep -Ev '^include/tesserae/(core|parallel|render|scenes)/' |
+    sed 's,^lib\(/[^/]*-linux-gnu\|64\)\?/,LIB/,' | LC_ALL=C sort >"$folder/found"
+diff "$folder/expected" "$folder/found" || fail "other files of the library than expected"
+[ ! -e "$folder/development/include/tesserae/core/dynamics/stepper.hpp" ] ||
+    fail "what no public header includes is installed"
 
 # The program finds its libraries, and does the same as the build's.
 program=$folder/local/bin/tesserae

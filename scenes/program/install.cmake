@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, and what `cpack` packs: the program, its page for man, and its
-# completions. Components are packages of their own; so far there is one, "program".
+# What `cmake --install` puts where of the program: itself, its page for man and its completions, the
+# component "program". What `cpack` packs: components are packages of their own.
 include(GNUInstallDirs)
 install(TARGETS tesserae RUNTIME COMPONENT program)
 
@@ -37,21 +37,31 @@ set(CPACK_GENERATOR TXZ)
 if(DPKG_SHLIBDEPS)
   set(CPACK_GENERATOR DEB)
 endif()
-set(CPACK_COMPONENTS_ALL program)
+set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME tesserae)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME tesserae-dev)
 set(CPACK_PACKAGE_CONTACT "The maintainers of tesserae")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rigid bodies in four dimensions, simulated and filmed")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "A scene file goes in; a trajectory, EXR frames and an MP4 come out.
 The same scene gives the same bytes with any number of threads.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "C++ headers and static libraries, for
+find_package(tesserae COMPONENTS core parallel render scenes).")
 if(TESSERAE_ARCH)
-  string(APPEND CPACK_COMPONENT_PROGRAM_DESCRIPTION "
+  foreach(package PROGRAM DEVELOPMENT)
+    string(APPEND CPACK_COMPONENT_${package}_DESCRIPTION "
 It needs a CPU of level ${TESSERAE_ARCH}.")
+  endforeach()
 endif()
-set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # Libraries as dpkg-shlibdeps finds them; beside them what the program calls where it is there.
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, fonts-dejavu-core, gnuplot-nox | gnuplot")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, fonts-dejavu-core, gnuplot-nox | gnuplot")
+# What component core needs; and what the others do.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libqhull-dev, pkg-config")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libtbb-dev, libembree-dev, libopenexr-dev, \
+libpng-dev, zlib1g-dev, libxxhash-dev, libfreetype-dev, libhdf5-dev, cmake, g++ | clang")
 # A package is of one system, whose libraries it needs: its version tells which.
 cmake_host_system_information(RESULT system QUERY DISTRIB_INFO)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
