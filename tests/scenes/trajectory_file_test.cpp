@@ -73,12 +73,16 @@ TEST_F(TrajectoryOfTheLibrary, RefusesWhatItCannotTell) {
     EXPECT_NE(testing::error_of<InputError>([&] { Trajectory(folder_ / "none.h5"); }), "");
 }
 
-/// Makes a dataset of the bodies anew.
+/// Makes a dataset of the bodies anew, of ones.
 void replace(const std::filesystem::path& file, const char* name, hid_t type,
-             std::vector<hsize_t> extent) {
+             const std::vector<hsize_t>& extent) {
     const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     ASSERT_GE(H5Ldelete(id, name, H5P_DEFAULT), 0);
-    scenes::make_dataset(id, name, type, std::move(extent), 0);
+    scenes::make_dataset(id, name, type, extent, 0);
+    const std::vector<double> values(extent[0], 1);
+    const hid_t dataset = H5Dopen2(id, name, H5P_DEFAULT);
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
     H5Fclose(id);
 }
 

@@ -96,7 +96,10 @@ TEST(FramesInMemory, AreThoseOfTheFilm) {
         EXPECT_EQ(picture.left(), 8);
         EXPECT_EQ(picture.top(), 4);
     }
-    EXPECT_EQ(scene.film(folder / "film", trajectory, {.frames = {3, 8, 9}}).kept, 2);
+    // One frame more: the trajectory is continued, and what is there is kept.
+    const FilmResult more = scene.film(folder / "film", {}, {.frames = {9, 3, 8}});
+    EXPECT_EQ(more.kept, 2);
+    EXPECT_EQ(more.rendered, 1);
 }
 
 TEST(FramesInMemory, HoldTheValuesOfTheirFiles) {
@@ -212,8 +215,9 @@ TEST(PicturesOfWorlds, KeepTheLooksOfBodiesWhoseNumbersStay) {
     EXPECT_GT(seen, 50u);
 
     // A body that the scene does not have is of the default material: a grey of 0.8.
-    const BodyId added =
-        world.add({.shape = Hyperbox{{0.8, 0.8, 0.8, 0.8}}}, {.position = {-1.5, 0, 0, 0}});
+    BodyState place;
+    place.position = {-1.5, 0, 0, 0};
+    const BodyId added = world.add({.shape = Hyperbox{{0.8, 0.8, 0.8, 0.8}}}, place);
     EXPECT_EQ(added, 4u);
     const Picture with = scene.render(world);
     EXPECT_EQ(ids_in(with), (std::set<float>{0, 1, 4, 5}));
