@@ -76,18 +76,23 @@ hash_of() {
         failed+=("$1 $2: no hash")
 }
 
-# package SUITE: packs the program, and installs it in a new system in which nothing was built.
+# package SUITE: packs the program and the library, and installs both in a new system in which nothing
+# was built: the program alone, then what builds an example with component core.
 package() {
     local user=$1.user
     step "$1" package 'rm -rf build/packages && cpack --config build/release/CPackConfig.cmake -B build/packages &&
-        dpkg-deb --info build/packages/*.deb && dpkg-deb --contents build/packages/*.deb'
+        for file in build/packages/*.deb; do dpkg-deb --info $file && dpkg-deb --contents $file || exit; done'
     rm -rf --one-file-system "${folder:?}/$user"
     bare_system "$1" "$user"
-    cp "$folder/$1"/tesserae/build/packages/*.deb "$root/scenes/gallery/first.toml" "$folder/$user/tesserae" ||
+    cp -r "$folder/$1"/tesserae/build/packages/*.deb "$root/scenes/gallery/first.toml" \
+        "$root/tests/library/ball" "$folder/$user/tesserae" ||
         { failed+=("$1: no package"); return; }
-    step "$user" install 'apt-get update -qq && apt-get install -y -qq --no-install-recommends ./*.deb \
+    step "$user" install 'apt-get update -qq && apt-get install -y -qq --no-install-recommends ./tesserae_*.deb \
         fonts-dejavu-core && tesserae --version'
     hash_of "$user" package tesserae first.toml
+    step "$user" library 'apt-get install -y -qq --no-install-recommends ./tesserae-dev_*.deb cmake make g++ &&
+        cmake -S ball -B ball/build -DCMAKE_BUILD_TYPE=Release && cmake --build ball/build && ball/build/ball |
+        grep "^0 touches 1"'
 }
 
 # Ninja and ccache are new there: everything is compiled.
