@@ -39,9 +39,10 @@ while(files)
         list(APPEND known ${CMAKE_MATCH_1})
       endif()
     elseif(line MATCHES "^#include <(.*)>")
-      if(NOT CMAKE_MATCH_1 MATCHES "${allowed}")
-        message(FATAL_ERROR "${file}: includes <${CMAKE_MATCH_1}>, and is included by a public "
-          "header: expected headers of the standard library, Eigen or fmt")
+      set(other ${CMAKE_MATCH_1})
+      if(NOT other MATCHES "${allowed}")
+        message(FATAL_ERROR "${file}: includes <${other}>, and is included by a public header: "
+          "expected headers of the standard library, Eigen or fmt")
       endif()
     endif()
   endforeach()
