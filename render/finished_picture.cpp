@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The place of each channel of a file: its own where tesserae knows it, else a layer of its own.
+/// The channels of a file that tesserae writes, those of a layer after each other.
 std::vector<render::ChannelPlace> places_in(std::span<const render::ImageChannel> channels) {
     std::vector<render::ChannelPlace> places;
     const auto is_there = [&](const std::string& name) {
