@@ -35,7 +35,7 @@ class TypesOfWorld {
     explicit TypesOfWorld(Scene& shown) : shown_(shown) {
         render::Appearance gone;
         gone.visible = false;
-        gone_ = add({Hypersphere{1}}, gone);
+        last_ = gone_ = add({Hypersphere{1}}, gone);
     }
 
     /// The type of the numbers that are not used any more.
@@ -45,9 +45,9 @@ class TypesOfWorld {
         if (like && shown_.bodies.types[*like] == type) return *like;
         const render::Appearance looks = like ? shown_.appearance[*like] : render::Appearance();
         // Bodies that were added together mostly are of one type.
-        if (last_ && shown_.bodies.types[*last_] == type && shown_.appearance[*last_] == looks)
-            return *last_;
-        return last_.emplace(add(type, looks));
+        if (!(shown_.bodies.types[last_] == type && shown_.appearance[last_] == looks))
+            last_ = add(type, looks);
+        return last_;
     }
 
   private:
@@ -59,7 +59,7 @@ class TypesOfWorld {
 
     Scene& shown_;
     std::uint32_t gone_ = 0;
-    std::optional<std::uint32_t> last_;
+    std::uint32_t last_ = 0;
 };
 
 /// Leaves so many bodies their names, and calls those after them "added".

@@ -57,7 +57,7 @@ class PosedPart {
         out_.size = 0;
         out_.compliance = 0;
         out_.most = 0;
-        out_.in_block = out_.starts_anew = false;
+        out_.in_block = out_.starts_anew = out_.holds_point = false;
         std::uint32_t part = out_.part - simulation_.joints.first_part[out_.joint];
         if (const auto held = held_of(joint_); held != 0 && part-- == 0)
             hold(held);
@@ -152,6 +152,8 @@ class PosedPart {
         out_.set = ImpulseSet::kAll;
         for (int i = 0; i < coordinates_.size; ++i)
             if ((held >> i & 1) != 0) add_row(i, unit_of(i));
+        out_.holds_point =
+            std::holds_alternative<PointJoint>(joint_.kind) && out_.size == PointJoint::kSize;
         aim(held_values(coordinates_.values), held_values(bends()));
     }
 

@@ -98,6 +98,11 @@ class ConstraintRows {
             const std::size_t place = sweep.backward ? which_.size() - 1 - i : i;
             Constraint& c = step_.constraints[which_[place]];
             if (c.in_block || (firm_only && !c.is_firm())) continue;
+            if (c.holds_point) {
+                const Vec4 change = sweep_point(c);
+                if (sweep.measured) residual = std::max(residual, response_of_point(c, change));
+                continue;
+            }
             const RowVector change = solve_rows(c, velocities(c));
             apply(c, change);
             if (sweep.measured)
@@ -152,6 +157,35 @@ class ConstraintRows {
     }
 
   private:
+    using PointMatrix = Eigen::Map<const Mat4>;
+
+    /// Does what the sweep does of any constraint, with the same bits, in a tenth of the time: the
+    /// rows of a held point are the axes.
+    Vec4 sweep_point(Constraint& c) const {
+        const BodyMotion a = motions_.at(c.place_a), b = motions_.at(c.place_b);
+        const Vec4 velocity = b.velocity + velocity_at(b.angular_velocity, c.r_b) - a.velocity -
+                              velocity_at(a.angular_velocity, c.r_a);
+        Eigen::Map<Vec4> impulse(c.impulse.data());
+        const Vec4 before = impulse;
+        const Vec4 left = Eigen::Map<const Vec4>(c.aim.data()) - velocity - c.compliance * before;
+        impulse = before + PointMatrix(c.mass.data()).lazyProduct(left);
+        const Vec4 change = impulse - before;
+        push(c.a, c.place_a, c.r_a, -change);
+        push(c.b, c.place_b, c.r_b, change);
+        return change;
+    }
+    double response_of_point(const Constraint& c, const Vec4& change) const {
+        return PointMatrix(c.response.data()).lazyProduct(change).cwiseAbs().maxCoeff();
+    }
+    /// What contacts do not move may be in many islands, which other threads solve.
+    void push(BodyId id, std::uint32_t place, const Vec4& r, const Vec4& impulse) const {
+        if (!simulation_.is_movable(id)) return;
+        BodyMotion motion{simulation_.type_of(id).inverse_mass * impulse, {}};
+        if (simulation_.needs.turning)
+            motion.angular_velocity = angular_response(simulation_, step_, id, wedge(r, impulse));
+        motions_.add(place, motion);
+    }
+
     RowVector velocities(const Constraint& c) const {
         return row_velocities(c, motions_.at(c.place_a), motions_.at(c.place_b));
     }

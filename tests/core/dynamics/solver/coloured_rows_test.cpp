@@ -155,7 +155,8 @@ TEST(ColouredRows, SolvesAPairAsTheOneByOneSolverDoes) {
             // impact at several points ends in float as soon as a sweep changes it by 3e-4 m/s, a
             // thousandth of its speed, of which there may be some ten left. With friction the
             // solution is not one alone (measured: 0.07 m/s).
-            hits += std::count(coloured.hit.begin(), coloured.hit.end(), 1);
+            hits += std::count_if(coloured.hit.begin(), coloured.hit.end(),
+                                  [](double h) { return h > 0; });
             const bool single = plain.contacts.size() == 1;
             // At one point friction and turning take turns until the same (measured: 2e-5).
             // Steps along directions carry roundings on, and to another solution where there are
