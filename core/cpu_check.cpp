@@ -1,37 +1,17 @@
 // Stops with a clear message on a CPU that lacks what the rest was compiled for. This file alone is
 // compiled without -march, and its check runs before every other initialiser of the program.
-#include <cpuid.h>
+#include "core/cpu_check.hpp"
+
 #include <unistd.h>
 
 #include <cstring>
 
 namespace {
 
-/// The operating system saves the upper halves of the vector registers (XCR0 bits 1 and 2).
-bool os_keeps_avx_state() {
-    unsigned low, high;
-    asm volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
-    return (low & 6u) == 6u;
-}
-
-/// All of x86-64-v3 (System V ABI, AMD64 supplement, table 3.1) that v2 does not have.
-bool has_x86_64_v3() {
-    unsigned a, b, c, d;
-    if (!__get_cpuid(1, &a, &b, &c, &d)) return false;
-    const unsigned leaf1 = bit_FMA | bit_MOVBE | bit_OSXSAVE | bit_AVX | bit_F16C | bit_POPCNT;
-    if ((c & leaf1) != leaf1 || !os_keeps_avx_state()) return false;
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d)) return false;
-    const unsigned leaf7 = bit_BMI | bit_AVX2 | bit_BMI2;
-    if ((b & leaf7) != leaf7) return false;
-    return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & bit_ABM) != 0;
-}
-
 __attribute__((constructor(101))) void require_cpu() {
-    if (std::strcmp(TESSERAE_ARCH, "x86-64-v3") != 0 || has_x86_64_v3()) return;
-    const char message[] =
-        "tesserae: this CPU lacks x86-64-v3 (AVX2, FMA, BMI2: Intel Haswell or AMD Excavator and "
-        "later), which this program was built for; build it with cmake -DTESSERAE_ARCH=x86-64\n";
-    if (write(STDERR_FILENO, message, sizeof message - 1) < 0) _exit(1);
+    if (cpu_suffices()) return;
+    if (write(STDERR_FILENO, kCpuMessage, std::strlen(kCpuMessage)) < 0) _exit(1);
+    if (write(STDERR_FILENO, "\n", 1) < 0) _exit(1);
     _exit(1);
 }
 
