@@ -24,6 +24,7 @@ packages=(
     nlohmann-json3-dev    # JSON 3.11
     libxxhash-dev         # hashes: xxHash 0.8
     gnuplot-nox           # tesserae plot, when it runs: gnuplot 5.4, 6.0
+    pybind11-dev python3-dev python3-numpy # Python's module: pybind11 2.10, 2.13; may be missing
     libgtest-dev          # tests: GoogleTest 1.12, 1.16
 )
 

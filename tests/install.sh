@@ -17,6 +17,17 @@ share/fish/vendor_completions.d/tesserae.fish
 share/man/man1/tesserae.1
 share/zsh/site-functions/_tesserae
 FILES
+# Where the Python module is built, it is installed too; its test is tests/python.
+modules=$(cd "$folder/local" && ls -d lib/python3.*/site-packages/tesserae 2>/dev/null) || true
+if [ -n "$modules" ]; then
+    for file in __init__.py __init__.pyi py.typed rotor.py rotor.pyi page.py progress.py records.py settings.py; do
+        echo "$modules/$file"
+    done >>"$folder/expected"
+    (cd "$folder/local" && ls "$modules"/_cpu.*.so "$modules"/_tesserae.*.so) >>"$folder/expected"
+    LC_ALL=C sort -o "$folder/expected" "$folder/expected"
+    PYTHONPATH=$folder/local/${modules%/tesserae} PYTHONDONTWRITEBYTECODE=1 \
+        /usr/bin/python3 -c 'import tesserae as ts; assert len(ts.World()) == 0' || fail "Python cannot import what is installed"
+fi
 (cd "$folder/local" && find . -type f -printf '%P\n') | LC_ALL=C sort >"$folder/found"
 diff "$folder/expected" "$folder/found" || fail "other files than expected"
 
@@ -68,4 +79,7 @@ complete -p tesserae >/dev/null || fail "bash has no completion"
 "$cmake" --install "$build" --prefix "$folder/usr" >/dev/null
 if [ -e /etc/debian_version ]; then
     [ -f "$folder/usr/share/zsh/vendor-completions/_tesserae" ] || fail "no completion for Debian's zsh"
+fi
+if [ -n "$modules" ] && [ -e /etc/debian_version ]; then
+    [ -f "$folder/usr/lib/python3/dist-packages/tesserae/__init__.py" ] || fail "no module where Debian's Python looks"
 fi
