@@ -33,7 +33,8 @@ case "${1:-}" in
     test_build release fast -DCMAKE_BUILD_TYPE=Release
     ;;
 --slow)
-    install_packages "${packages[@]}" python3 python3-h5py
+    install_packages "${packages[@]}" python3 python3-h5py \
+        mypy python3-nbclient python3-ipykernel python3-matplotlib
     test_build release "fast|slow" -DCMAKE_BUILD_TYPE=Release
     ;;
 --all)

@@ -5,6 +5,7 @@ empty folder a page, which has the gallery's scenes.
 ```toml NAME.toml   is that file, and loads;   ```toml   loads by itself
 ```bash, ```python  run and end with status 0;  ```text   is output or for other programs
 ```cpp, ```cmake    see cpp_blocks.py
+```pycon            what Python answers is what stands there; all of a page are one session, run last
 A block without a language is an error. Ends with 1 and the page's line where something fails."""
 
 import os
@@ -37,11 +38,13 @@ def blocks(page):
         yield start, [], ""
 
 
-def python_with_h5py():
+def python_for(text):
+    """A Python that has what a block imports."""
+    modules = "numpy" + ", h5py" * ("h5py" in text) + ", tesserae" * ("tesserae as ts" in text)
     for python in (sys.executable, "/usr/bin/python3"):
-        if subprocess.run([python, "-c", "import h5py, numpy"], capture_output=True).returncode == 0:
+        if subprocess.run([python, "-c", f"import {modules}"], capture_output=True).returncode == 0:
             return python
-    sys.exit("no Python with h5py and numpy: install python3-h5py")
+    sys.exit(f"no Python with {modules}: install python3-h5py; PYTHONPATH tells where tesserae is")
 
 
 def run_block(kind, words, text, folder, environment):
@@ -53,17 +56,29 @@ def run_block(kind, words, text, folder, environment):
     elif kind == "bash":
         command = ["bash", "-euo", "pipefail", "-c", text]
     elif kind == "python":
-        command = [python_with_h5py(), "-c", text]
+        command = [python_for(text), "-c", text]
+    elif kind == "pycon":
+        (folder / "session.txt").write_text(text)
+        command = [python_for(text), "-m", "doctest", "-o", "ELLIPSIS", "session.txt"]
     elif kind in LEFT_OUT:
         return ""
     else:
-        return f"a block of {kind or 'no language'}: expected toml, bash, python, cpp, cmake or text"
+        return f"a block of {kind or 'no language'}: expected toml, bash, python, pycon, cpp, cmake or text"
     try:
         done = subprocess.run(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=MOST_SECONDS)
     except subprocess.TimeoutExpired:
         return f"took more than {MOST_SECONDS} s"
     return "" if done.returncode == 0 else f"status {done.returncode}:\n" + done.stdout.decode(errors="replace")
+
+
+def session_of(page):
+    """The page's ```pycon blocks, each in the lines where it stands."""
+    lines = [""] * len(page.read_text().splitlines())
+    for line, words, text in blocks(page):
+        if words[:1] == ["pycon"]:
+            lines[line:line + text.count("\n")] = text.splitlines()
+    return "\n".join(lines) + "\n" if any(lines) else ""
 
 
 def run_page(page, program, only_load):
@@ -76,8 +91,11 @@ def run_page(page, program, only_load):
         (folder / "bin").mkdir()
         (folder / "bin/tesserae").symlink_to(program)
         environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
-        for line, words, text in blocks(page):
+        session = session_of(page)
+        for line, words, text in [*blocks(page), *[(1, ["pycon", "session"], session)] * bool(session)]:
             kind = words[0] if words else ""
+            if kind == "pycon" and len(words) == 1:
+                continue  # a part of the session
             if only_load and kind not in ("toml", ""):
                 continue
             begin = time.time()
