@@ -52,8 +52,8 @@ py::object changes_of(SharedWorld& self) {
 
 py::object ray(const SharedWorld& self, const py::object& origin, const py::object& direction,
                std::optional<double> reach) {
-    const auto hit =
-        self.get().ray(vec4_of(origin, "origin"), vec4_of(direction, "direction"), reach.value_or(kNoLimit));
+    const auto hit = self.get().ray(vec4_of(origin, "origin"), vec4_of(direction, "direction"),
+                                    reach.value_or(kNoLimit));
     if (!hit) return py::none();
     return record("RayHit", hit->body, hit->distance, array_of(hit->point), array_of(hit->normal));
 }

@@ -254,7 +254,8 @@ void add_boxes_and_balls(py::module_& module) {
              }),
              arg("normal"), arg("offset") = 0.0, "__init__(self, normal, offset=0.0)\n--\n\n")
         .def_property_readonly("normal", parameter("normal"), "Of length 1.")
-        .def_property_readonly("offset", parameter("offset"), "Where the plane is along its normal [m].");
+        .def_property_readonly("offset", parameter("offset"),
+                               "Where the plane is along its normal [m].");
 }
 
 RegularPolychoron regular_of(const std::string& name) {
