@@ -5,6 +5,7 @@ import os
 from typing import Sequence, Union
 
 import numpy as np
+import numpy.typing as npt
 
 _SCENE = """\
 camera = {{ position = {position}, look_at = {centre}, field_of_view = 40 }}
@@ -16,7 +17,7 @@ body = [{{ shape = "hypersphere", radius = 1 }}]
 """
 
 
-def scene_around(centres: Sequence[np.ndarray], radii: Sequence[float]) -> str:
+def scene_around(centres: Sequence[npt.NDArray[np.float64]], radii: Sequence[float]) -> str:
     """Returns the text of a scene whose camera sees balls at these centres, in a slice that passes
     as near to w = 0 as they are. Its body stands for those of a world."""
     low, high = np.full(4, -1.0), np.full(4, 1.0)

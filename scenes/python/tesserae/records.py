@@ -1,27 +1,34 @@
 """What worlds, scenes and films tell, as named tuples."""
 
 from pathlib import Path
-from typing import NamedTuple, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple, Type
 
 import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from . import Shape, World
 
 __all__ = ["BodyState", "BodyType", "ContactChanges", "FilmResult", "JointReading", "Nearest", "RayHit",
            "SimulationResult", "StepReport"]
+
+Array = npt.NDArray[np.float64]
+Ids = npt.NDArray[np.uint32]
 
 
 class BodyState(NamedTuple):
     """Where a body is and how it moves, in the world."""
 
-    position: np.ndarray  #: centre (4,) [m]
-    rotor: np.ndarray  #: body to world (8,)
-    velocity: np.ndarray  #: (4,) [m/s]
-    angular_velocity: np.ndarray  #: (6,) [rad/s]
+    position: Array  #: centre (4,) [m]
+    rotor: Array  #: body to world (8,)
+    velocity: Array  #: (4,) [m/s]
+    angular_velocity: Array  #: (6,) [rad/s]
 
 
 class BodyType(NamedTuple):
     """What a body was added with."""
 
-    shape: "object"
+    shape: "Shape"
     mass: float  #: [kg], infinite for a hyperplane
     friction: float
     rolling_friction: float  #: [m]
@@ -47,8 +54,8 @@ class StepReport(NamedTuple):
 class ContactChanges(NamedTuple):
     """Pairs of bodies that began and ended to touch, each a row (m, 2), ascending."""
 
-    began: np.ndarray
-    ended: np.ndarray
+    began: Ids
+    ended: Ids
 
 
 class JointReading(NamedTuple):
@@ -69,8 +76,8 @@ class RayHit(NamedTuple):
 
     body: int
     distance: float  #: from the origin [m]
-    point: np.ndarray  #: (4,) [m]
-    normal: np.ndarray  #: unit, outward (4,)
+    point: Array  #: (4,) [m]
+    normal: Array  #: unit, outward (4,)
 
 
 class Nearest(NamedTuple):
@@ -78,8 +85,8 @@ class Nearest(NamedTuple):
 
     body: int
     distance: float  #: of its surface [m], negative inside
-    point: np.ndarray  #: on its surface (4,) [m]
-    normal: np.ndarray  #: unit, outward (4,)
+    point: Array  #: on its surface (4,) [m]
+    normal: Array  #: unit, outward (4,)
 
 
 class SimulationResult(NamedTuple):
@@ -103,14 +110,14 @@ class FilmResult(NamedTuple):
     preview: Path  #: of the last frame
 
 
-def made_shape(kind, parameters):
+def made_shape(kind: "Type[Shape]", parameters: Dict[str, Any]) -> "Shape":
     """Makes a shape again that was pickled."""
-    from ._tesserae import Hyperplane, _unit_plane
+    from ._tesserae import _unit_plane, Hyperplane
 
     return _unit_plane(**parameters) if kind is Hyperplane else kind(**parameters)
 
 
-def loaded_world(data, threads):
+def loaded_world(data: bytes, threads: int) -> "World":
     """Makes a world again that was pickled."""
     from ._tesserae import World
 
