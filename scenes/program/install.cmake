@@ -62,6 +62,23 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, fonts-dejavu-core, gnuplot-
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libqhull-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "libtbb-dev, libembree-dev, libopenexr-dev, \
 libpng-dev, zlib1g-dev, libxxhash-dev, libfreetype-dev, libhdf5-dev, cmake, g++ | clang")
+if(TARGET tesserae_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tesserae)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module tesserae: worlds with numpy's views,
+scenes, trajectories and pictures as arrays.")
+  if(TESSERAE_ARCH)
+    string(APPEND CPACK_COMPONENT_PYTHON_DESCRIPTION "
+It needs a CPU of level ${TESSERAE_ARCH}.")
+  endif()
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # The module is of one version of Python, that of the system.
+  string(REGEX MATCH "^3\\.([0-9]+)" python3 ${TESSERAE_PYTHON_VERSION})
+  math(EXPR next_minor "${CMAKE_MATCH_1} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= ${python3}), python3 (<< 3.${next_minor}), python3-numpy")
+endif()
 # A package is of one system, whose libraries it needs: its version tells which.
 cmake_host_system_information(RESULT system QUERY DISTRIB_INFO)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
