@@ -272,7 +272,7 @@ TEST(ColouredRows, WorksAsWellFarAwayAndAtHighSpeed) {
     // floats, 6e-8 of 1 m/s, which the iterations hand on. So small a slope is gone along or
     // not, as it is rounded: 4e-5 m/s then, and 1e-6 if nothing ever is.
     EXPECT_LT(difference(here, there), 1e-4);
-    EXPECT_GT(std::count(here.hit.begin(), here.hit.end(), 1), 50);
+    EXPECT_GT(std::count_if(here.hit.begin(), here.hit.end(), [](double h) { return h > 0; }), 50);
 }
 
 /// Eight spheres on 32 that weigh a thousandth.
