@@ -26,13 +26,27 @@ std::vector<fs::path> pages() {
     return found;
 }
 
+/// A page without its blocks of code, in which brackets are no links.
+std::string prose(const fs::path& page) {
+    std::istringstream lines(content(page));
+    std::string text;
+    bool is_code = false;
+    for (std::string line; std::getline(lines, line);) {
+        const bool is_fence = line.find_first_not_of(' ') == line.find("```") &&
+                              line.find("```") != std::string::npos;
+        if (is_fence) is_code = !is_code;
+        if (!is_code && !is_fence) text += line + "\n";
+    }
+    return text;
+}
+
 TEST(Readme, LinksLeadToFilesThatHoldWhatTheyName) {
     // [label](path), [label](path#section), and [label]: path on a line of its own.
     const std::regex link(R"(\[([^\]]*)\](?:\(([^)#]+)(?:#[^)]*)?\)|: ([^\s#]+)(?:#\S*)?\n))");
     const std::regex name(R"(`(?:\w+::)?(\w+)`)");
     int links = 0, names = 0;
     for (const fs::path& readme : pages()) {
-        const std::string text = content(readme);
+        const std::string text = prose(readme);
         for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
             const std::string label = (*at)[1], target = (*at)[(*at)[2].matched ? 2 : 3];
             if (target.starts_with("http")) continue;
