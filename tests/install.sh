@@ -7,7 +7,9 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 fail() { echo "install: $*" >&2; exit 1; }
 
-"$cmake" --install "$build" --prefix "$folder/local" --component program >/dev/null
+for component in program python; do
+    "$cmake" --install "$build" --prefix "$folder/local" --component "$component" >/dev/null
+done
 cat >"$folder/expected" <<'FILES'
 bin/tesserae
 share/bash-completion/completions/tesserae
