@@ -14,7 +14,7 @@ constexpr std::uint64_t kAllGroups = ~std::uint64_t{0};
 
 /// The properties that bodies of one type share; all bodies of a lattice are of one type.
 struct BodyType {
-    Shape shape;
+    Shape shape = {};
     double mass = 1;              ///< [kg]; unused for unbounded shapes
     double friction = 0.5;        ///< >= 0; a pair uses the geometric mean
     double rolling_friction = 0;  ///< [m], >= 0; a pair uses the larger, if it has friction
@@ -43,10 +43,10 @@ bool collide(const Type& a, const Type& b) {
 
 /// Where a body is and how it moves.
 struct BodyState {
-    Vec4 position = Vec4::Zero();  ///< centre, world [m]
-    Rotor rotor;                   ///< body to world, a unit rotor
-    Vec4 velocity = Vec4::Zero();  ///< world [m/s]
-    Bivector angular_velocity;     ///< world [rad/s]
+    Vec4 position = Vec4::Zero();    ///< centre, world [m]
+    Rotor rotor = {};                ///< body to world, a unit rotor
+    Vec4 velocity = Vec4::Zero();    ///< world [m/s]
+    Bivector angular_velocity = {};  ///< world [rad/s]
 };
 
 }  // namespace tesserae
