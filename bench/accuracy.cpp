@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error against known results and the run time that it takes: CSV on standard output.
 //   accuracy [NAME...]   the experiments of these names only
 

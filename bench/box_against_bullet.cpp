@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A box that moves in w = 0 is a 3D box: its path beside that of Bullet's, at smaller and smaller
 // steps. CSV on standard output; exits with 1 if the engines differ by more than their own errors.
 

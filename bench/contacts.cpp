@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of the narrow phase for every pair of shapes, by Google Benchmark, over 10^5 random pairs
 // each, and of Bullet's functions for the same pairs in 3D. See README.md.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The general pair function of convex bodies: pairs of 24-cells, boxes beside their own function,
 // cubes and icosahedra beside Bullet's and libccd's; what separating axes would cost; and towers of
 // 24-cells and boxes. One thread, all in turns. See README.md.

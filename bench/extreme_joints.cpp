@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Extreme scenes that others publish as hard, with joints, in four dimensions.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stiff and extreme scenes at the defaults: CSV on standard output. `extremes long` adds the
 // longest one, `extremes joints` are others: those with joints, a card house and an arch.
 

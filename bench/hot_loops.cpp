@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time of the inner loops, by Google Benchmark. Every benchmark reports, as counters, nanoseconds
 // for one item of its work or rays in a second; see README.md for the names.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What leaving out saves: each scene twice, once needing a part by a negligible amount and once not
 // at all, measured in turns. See README.md.
 //   leave_out [NAME...]     default: all

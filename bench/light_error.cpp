@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error of the traced light against the number of samples: CSV on standard output.
 //   light_error [SCENE...]   these scenes only
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/matrix.hpp"
 
 #include "bench/experiments/experiments.hpp"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Error of `direct` where the penumbrae of many bodies overlap, against `path` with the same light: CSV on standard output.
 
     penumbrae.py PROGRAM [PROGRAM...]

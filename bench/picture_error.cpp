@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error of pictures against samples and time: the integrators and the sampler on one scene, and
 // the soft shadow of `direct` against traced light. CSV on standard output, with the columns of
 // traced_rays; one thread.

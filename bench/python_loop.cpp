@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop of bench/python_loop.py in C++: steps a scene's world, and prints the time that it took.
 //   python_loop SCENE STEPS THREADS OUTPUT    OUTPUT gets the world's bytes at the end
 #include <chrono>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A loop of steps in Python against the same in C++, in turns: the ratio of their times.
 
     python_loop.py BUILD [--bodies 10000] [--steps 1000] [--threads 1] [--repeats 3]

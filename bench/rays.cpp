@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays against random spheres and boxes, one thread: millions of rays a second as CSV, beside two
 // yardsticks of the same run. See README.md for the columns.
 //   rays [BODIES...]     by default 100, 1000, 10000, 100000

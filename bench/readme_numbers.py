@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the two tables of numbers in the root README from the CSV files in bench/results.
 
 usage: readme_numbers.py                  prints both tables

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the tables of the inner loops out of what the programs printed.
 
 usage: report.py HEAD HOT_LOOPS_JSON CONTACTS_DOUBLE_JSON CONTACTS_FLOAT_JSON RESULTS_FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error against run time: one CSV file and one plot an experiment, fitted orders, and which way of
 spending a step is best.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error of the picture against run time: one table, plots and fitted slopes.
 
 usage: report_picture.py HEAD PICTURE_CSV RESULTS_FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How still piles stand and how deep they overlap, against the time of a step: rest.csv, rest.png.
 
 usage: report_rest.py HEAD REST_CSV RESULTS_FOLDER

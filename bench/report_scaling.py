@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the stages of a step grow with the bodies and shrink with the threads: one CSV file and plots.
 
 usage: report_scaling.py HEAD SCALING_CSV RESULTS_FOLDER

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds into build/bench, measures, and writes bench/results. The machine
 # should have nothing else to do; the load is noted in the results.
 #   bash bench/run.sh              all parts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages of a step against the number of bodies and threads, in scenes of `tesserae generate`.
 // One scene a process, so that memory is its own; 1, 2, 4, ... threads start from the same settled
 // state, one after the other. See README.md.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error and time of sphere tracing against its tolerance and against its limit of steps, beside the
 // closed form: CSV on standard output. Exits with 1 if the loop measured is not the renderer's.
 

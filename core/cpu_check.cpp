@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stops with a clear message on a CPU that lacks what the rest was compiled for. This file alone is
 // compiled without -march, and its check runs before every other initialiser of the program.
 #include "core/cpu_check.hpp"

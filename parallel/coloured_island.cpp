@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "parallel/coloured_island.hpp"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "parallel/island_graph.hpp"
 
 #include <tbb/flow_graph.h>

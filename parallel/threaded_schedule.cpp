@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "parallel/threaded_schedule.hpp"
 
 #include "core/dynamics/solver/solver.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/frame.hpp"
 
 #include <tbb/parallel_pipeline.h>

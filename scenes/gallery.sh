@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes the gallery's contact sheets, scenes/gallery/contact.jpg and joints.jpg: a row of four moments
 # for each film, in the order of the manual's page on pictures. Takes some minutes on two cores; frames
 # stay in out/gallery.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds, and runs the main job: simulates, renders and previews a scene.
 #   bash scenes/run.sh                          scenes/gallery/first.toml into out/first
 #   bash scenes/run.sh SCENE.toml -o DIR ...    anything that `tesserae run` takes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by scenes/run.sh and tests/run.sh: installs what is missing (Debian 12 and 13) and builds.
 # Sets `root` to the checkout. Costs under two seconds when there is nothing to do.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

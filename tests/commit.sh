@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # commit.sh CMAKE: the commit that the build writes into the program is that of its sources, and
 # the same one is not written twice.
 set -euo pipefail

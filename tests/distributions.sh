@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Shows on bare systems of Debian 12 and 13 that both README commands, clang++ and the benchmarks
 # work, that the package for Debian does in a system that has nothing else, how long each takes, and
 # that the same film has the same hash by all of them. By hand, before a release: it needs root,

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Holds the program to its promise that nothing is lost: lets system calls fail, kills it, damages its
 # files, starts it twice. Installs what is missing, builds, takes some minutes on two idle cores.
 #   bash tests/faults.sh              all checks, a drawn part of the cases (always the same)

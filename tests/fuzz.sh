@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Gives every reader of files and options damaged input, by clang's libFuzzer under the address and
 # undefined sanitizers, and prints what came of it. The targets are in tests/fuzz.
 #   bash tests/fuzz.sh [SECONDS] [TARGET...]   for so long each (default: 60, all targets)

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # install.sh CMAKE BUILD: what `cmake --install` puts into a folder is all that is used, and is used
 # from there.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # library.sh CMAKE BUILD: projects that use the library as installed, and as a part of their own.
 # They print what the same source prints in this build, and write the files that the program writes.
 #

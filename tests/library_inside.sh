@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # library_inside.sh CMAKE BUILD: a project that has the sources of tesserae as a part of its own
 # builds the library that it asks for and nothing else, and prints what the same source prints in
 # this build, although it is not optimised.

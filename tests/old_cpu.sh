@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # old_cpu.sh PROGRAM: on a CPU that it was not built for the program says so and ends, before any
 # instruction runs that such a CPU lacks.
 set -euo pipefail

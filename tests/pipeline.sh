@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Takes every scene of the gallery, small, through the whole program built with sanitizers: run,
 # continue, change of look, parts, join, film, view, plot, export, hash, diff, plan, info, submit.
 #   bash tests/pipeline.sh             address+undefined, then thread

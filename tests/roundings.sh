@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks that the compiler rounds to float wherever the sources say so. g++ 12 does not where it makes
 # vectors of neighbouring doubles that become floats and then doubles again: it takes the first
 # doubles for the last ones, and results are not those of other compilers.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs what is missing, builds, and runs the tests.
 #   bash tests/run.sh           the fast set, release build
 #   bash tests/run.sh --slow    the slow set too

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Whether what is compiled for AVX-512 stays where it is called from: the linker takes a function that
 # several sources have from any of them, and another CPU would stop at it.
 #   bash tests/sixteen_alone.sh LIBRARY   fails if its sixteen.cpp.o has such a function

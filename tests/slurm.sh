@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes films with a real Slurm, which it installs (Debian's), starts on the loopback address and
 # stops again: one node of this machine, the usual plug-ins of a cluster but for cgroups. As root.
 #   bash tests/slurm.sh            all of it, under five minutes once the program is built

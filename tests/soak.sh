@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs the program for a long time and watches it: memory, open files, energy.
 #   bash tests/soak.sh [SECONDS]    an hour by default; writes bench/results/soak.csv and soak.png
 set -euo pipefail

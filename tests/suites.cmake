@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Makes one test of CTest for each suite of an executable: run after it was linked, as
 #   cmake -DEXECUTABLE=FILE -DOUTPUT=FILE -P suites.cmake
 # A process for each single test would take a sixth of the fast set's time to start.

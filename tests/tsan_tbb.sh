@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced after scenes/setup.sh: oneTBB for ThreadSanitizer.
 #
 # ThreadSanitizer sees a hand-off between threads only in code that it instrumented, and Debian's

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Holds the page of `tesserae view` against the renderer, in Debian's chromium without a screen and
 # with software GL. Installs what is missing, builds, takes a few minutes.
 set -euo pipefail

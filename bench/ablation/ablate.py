@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Switches off each mechanism of the contact solver alone and compares the gate's rows.
 
 usage: ablate.py GATE RAW_FOLDER HEAD RESULT.csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Error against render time of one still in tesserae and in Blender's Cycles: CSV and plots.
 
 usage: blender -b --factory-startup -noaudio --python-exit-code 1 --python compare.py -- \

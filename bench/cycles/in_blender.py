@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The still in Blender's Cycles. Our (x, y, z) is Blender's (x, z, y), which has z up."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The still in tesserae and Cycles: table with its head, pictures beside each other, error against
 time. usage: report.py HEAD RAW_FOLDER RESULTS_FOLDER"""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The still that both renderers draw: balls on a plane under a soft sun and an even sky.
 
 Ours are hyperspheres of which the slice w = 0 cuts balls of `radius`; Cycles gets these balls. An

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stiff and extreme scenes of extreme_cases.hpp, at the default settings.
 
 #include "bench/extreme_cases.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes in which users of this and of other engines found bodies to behave badly, each measured
 // by what is wrong in it, so that an improvement shows.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gate of the dynamics: CSV on standard output, progress on the other one. See README.md.
 //   gate [--list] [--quick] [--scenes N] [--runs N] [--no-times] [--shake N] [--rows NAME...]
 

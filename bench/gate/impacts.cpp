@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two to four bodies of any shape that meet in the air, with restitution 0, 0.5 or 1, with and
 // without friction.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One to four bodies thrown into a wedge between two walls, with friction of 0.5 to 3.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whirling plates and coins that are thrown at each other, beside 16 times as many steps, and at a
 // thin wall.
 

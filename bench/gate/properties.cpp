@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The properties that every scene has, of scenes as the property tests draw them.
 
 #include "tests/scenes/properties/properties.hpp"

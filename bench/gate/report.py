@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares two tables of the gate, row by row.
 
 report.py BEFORE.csv AFTER.csv    prints the rows that changed and how many stayed; exits with 1 if any got worse.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stacks of boards, a wall and a pyramid of boxes, 1, 10 and 30 s after they were put up.
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies that slide and roll over a floor of flush boxes, beside the same over one plane.
 
 #include <algorithm>

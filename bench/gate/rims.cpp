@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coins that are thrown down and wobble, and coins that roll and lean, beside eight times as many
 // steps.
 

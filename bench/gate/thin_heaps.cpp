@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A dozen plates, rods and coins of 3 to 15 mm, of unequal masses, that fall into a pit.
 
 #include <algorithm>

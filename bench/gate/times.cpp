@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times of a step beside Bullet's, the two in turn, and how the same scenes lie: a wall of boxes
 // that settles, stands and is hit, and piles and heaps that have come down.
 

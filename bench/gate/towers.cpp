@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Towers of 5 to 40 boxes of unequal sizes, most of them of unequal masses, some with gaps.
 
 #include <algorithm>

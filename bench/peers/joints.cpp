@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ropes and nets of balls joined by points: tesserae in four dimensions beside Bullet in three, in
 // one process on one thread, by turns. See README.md.
 //   joints [SIDE]     of the net, usual 100

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tesserae in four dimensions beside Bullet and ODE in three: time of a whole step, for a contact
 // point and iteration, beside the overlap that it leaves. See README.md.
 //   peers SCENE COUNT [all]   sphere_pile or box_wall of so many bodies; all: not only tesserae and

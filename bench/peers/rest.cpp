@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How still piles of boxes stand after ten seconds, and what a step costs: tesserae by
 // sweeps, sub-steps and steps a second beside Bullet and ODE by sweeps. See README.md.
 //   rest [SCENE...]     board_stacks, box_wall, box_pyramid; default: all

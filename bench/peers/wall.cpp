@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A wall of boxes while it settles, when it has, and after a heavy ball has hit it: tesserae at its
 // defaults in four dimensions beside Bullet at its own in three. See README.md.
 //   wall COUNT REPEATS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/contact/box_pair.hpp"
 
 #include <cmath>

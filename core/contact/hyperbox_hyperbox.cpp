@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/contact/hyperbox_hyperbox.hpp"
 
 #include "core/contact/box_distance.hpp"

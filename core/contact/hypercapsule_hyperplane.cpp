@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/contact/hypercapsule_hyperplane.hpp"
 
 #include "core/contact/capsule_core.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/convex/placed_balls.hpp"
 
 #include <algorithm>

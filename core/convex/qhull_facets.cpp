@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/convex/qhull_facets.hpp"
 
 #include <Eigen/Geometry>

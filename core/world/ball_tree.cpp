@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/world/ball_tree.hpp"
 
 #include <algorithm>

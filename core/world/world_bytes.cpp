@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/world/world_bytes.hpp"
 
 #include <fmt/format.h>

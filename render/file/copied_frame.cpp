@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/file/copied_frame.hpp"
 
 #include <fstream>

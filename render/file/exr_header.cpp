@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/file/exr_header.hpp"
 
 #include <OpenEXR/ImfVersion.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/file/image_pixels.hpp"
 
 #include <OpenEXR/ImfChannelList.h>

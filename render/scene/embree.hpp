@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Embree 3 and 4 by one set of names; CMake finds one and says which. Only for sources that talk to

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/scene/view_scene.hpp"
 
 #include "core/error.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A frame of `tesserae export --format ply` in Blender: an object a body, with its name, its object id as
 pass index and custom property, and the camera of camera.json, with keys for the whole film.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/farm/status.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/film/film_folder.hpp"
 
 #include <cerrno>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where of the libraries: component "development". A project finds them
 # with find_package(tesserae COMPONENTS core parallel render scenes).
 include(GNUInstallDirs)

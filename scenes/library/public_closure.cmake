@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DSOURCE=... [-DOUTPUT=...] -P public_closure.cmake: looks at the public headers and all that
 # they include in turn. It fails if they need a library that whoever uses them should not need. With
 # OUTPUT it writes them there as they are installed: tesserae/NAME.hpp, and tesserae/core/... for the

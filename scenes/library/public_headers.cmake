@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The public headers: NAME=FILE is <tesserae/NAME.hpp>. Each belongs to the component that its file
 # lies in.
 set(TESSERAE_PUBLIC_HEADERS

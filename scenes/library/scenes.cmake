@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The room of scenes, with what is made of other files while it is built.
 tesserae_room(scenes USES parallel render EXCEPT scenes/program/main.cpp
   PRIVATE_LIBRARIES TBB::tbb PkgConfig::XXHASH Freetype::Freetype $<INSTALL_INTERFACE:hdf5::hdf5>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/load/body_finder.hpp"
 #include "scenes/load/load_parts.hpp"
 

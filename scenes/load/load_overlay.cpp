@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/load/load_parts.hpp"
 #include "scenes/load/overlay_keys.hpp"
 

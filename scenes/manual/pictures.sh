@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes the pictures of the manual from the scenes that its pages show, and puts them beside the pages.
 #   bash scenes/manual/pictures.sh [PROGRAM] [THREADS]    PROGRAM: build/release/tesserae unless given
 # Needs ffmpeg. Takes some minutes on two cores.

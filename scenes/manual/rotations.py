@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Rotations by which the regular polychora stand on a vertex, an edge, a face or a cell.
 
     rotations.py                             prints the table of four-dimensions.md

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/program/command_line.hpp"
 
 #include <fmt/ranges.h>

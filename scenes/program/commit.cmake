@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DSOURCE=FOLDER -DOUTPUT=FILE -P commit.cmake: writes the source that defines kCommit. It is
 # left alone where it says the same already, so that nothing is compiled again.
 set(id "")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` puts where of the program: itself, its page for man and its completions, the
 # component "program". What `cpack` packs: components are packages of their own.
 include(GNUInstallDirs)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/process/memory.hpp"
 #include "scenes/program/commands.hpp"
 #include "scenes/program/commit.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The module tesserae._cpu: importing it raises ImportError on a CPU that lacks what the rest was
 // compiled for. The package imports it before all else. It is compiled for any CPU.
 #include <Python.h>

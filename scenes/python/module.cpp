@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The module tesserae._tesserae. The package's __init__.py says what is public.
 #include <pybind11/pybind11.h>
 

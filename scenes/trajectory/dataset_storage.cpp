@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/trajectory/dataset_storage.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake -DFOLDER=... -DOUTPUT=... -DSOURCES="a.js b.glsl" -P embed.cmake: the page's sources as C++,
 # so that the program needs no files beside it.
 separate_arguments(SOURCES)

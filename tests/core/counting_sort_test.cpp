@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/counting_sort.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nothing is lost: what becomes of files when system calls fail, processes are killed, files are
 damaged, two processes want one file, and a growing file is read.
 

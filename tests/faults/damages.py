@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is damaged, refused or cannot be said loses nothing else: files that are cut, emptied or have a
 flipped bit, programs that die, streams that cannot be written."""
 

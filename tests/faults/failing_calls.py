@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command survives system calls that fail: it says which file and why, damages nothing, and
 the same command then makes all of it.
 

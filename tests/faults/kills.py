@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A command that is stopped at any moment, politely or not, loses nothing: the same command then ends
 with the bytes of one that nothing stopped."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A growing trajectory can be read while it is written.
 
 An open that meets a flush and fails works when tried again. What is read is right where the file's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two processes that want the same file: one is told so, or both are right; nothing is damaged."""
 
 import random

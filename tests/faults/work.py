@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the checks of this folder share: small scenes, the jobs that are disturbed, a program that is
 run with or without faults, and the comparison of what it leaves with an undisturbed run's files."""
 

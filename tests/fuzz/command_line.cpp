@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line, a word a line, and what its numbers then mean to a scene.
 #include "scenes/program/command_line.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Canonical texts as they come from trajectories and folders, which anyone may have changed: two of
 // them, parted by a zero byte, are compared line by line.
 #include "scenes/load/effective.hpp"

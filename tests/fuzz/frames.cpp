@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --frames, and the frames of submitted tasks. The first byte says how many frames there are.
 #include "scenes/farm/estimate.hpp"
 #include "scenes/timeline.hpp"

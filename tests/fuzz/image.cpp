@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenEXR images: what `tesserae info`, `status`, `hash` and `diff` read of them.
 #include "render/file/image_info.hpp"
 #include "render/file/whole_image.hpp"

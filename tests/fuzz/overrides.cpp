@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --set KEY=VALUE, an entry a line, on a scene that has one of everything.
 #include <sstream>
 

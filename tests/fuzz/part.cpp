@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of a frame, two of them in the input: the length of the first, 4 bytes, comes before it.
 // Every second input gets the checksums that its bytes have, or hardly any would be looked into.
 #define XXH_INLINE_ALL

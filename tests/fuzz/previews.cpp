@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Folders of previews to make a film of. The program that is called as ffmpeg reads nothing.
 #include <fuzzer/FuzzedDataProvider.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unfinished trajectories that are continued: the file as HDF5 has it, and the record of what one
 // step leaves to the next (resume_record.hpp), damaged and given its hash again.
 #include <fstream>

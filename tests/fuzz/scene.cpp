@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files: what is accepted is finite, and its canonical text is the same scene again.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes what the targets for binary files start from: fuzz_seeds FOLDER, a folder a target.
 #include <cstdio>
 #include <cstring>

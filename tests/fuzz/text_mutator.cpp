@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes texts as libFuzzer does and, now and then, as it would hardly ever: by a piece that is
 // repeated many times, which finds what grows with the square or takes the stack.
 #include <algorithm>

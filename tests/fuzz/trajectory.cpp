@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trajectories that are HDF5 files, but not those that this program writes.
 #include "tests/fuzz/example.hpp"
 #include "tests/fuzz/hdf5_changes.hpp"

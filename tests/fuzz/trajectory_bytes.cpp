@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trajectories in which bytes are damaged: of every four bytes of the input three say where in a
 // valid file, and one what is there instead. Then the file may be cut off. Damage in HDF5's own
 // structures is left to HDF5 to notice (see TrajectoryReader): a crash inside of it is its own.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C++ blocks of a page, which are one program: what a block declares, those after it use.
     cpp_blocks.py write PAGE SOURCE.cpp     makes the program's source; the build compiles it
     cpp_blocks.py run PROGRAM PAGE          runs it in a folder with the page's scenes, and compares

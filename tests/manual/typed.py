@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs what README and the manual tell a reader to type: every block of a page in its order, in one
 empty folder a page, which has the gallery's scenes.
     typed.py PROGRAM [--load] PAGE...    --load: only whether scenes load, in milliseconds

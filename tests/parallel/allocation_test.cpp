@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the engine takes from operator new in a step of bodies that have settled, or slide.
 
 #include <gtest/gtest.h>

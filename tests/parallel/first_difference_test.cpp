@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/parallel/first_difference.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the module tells of itself: docstrings that run, and stubs with the same names and signatures."""
 
 import ast

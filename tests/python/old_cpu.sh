@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # old_cpu.sh MODULES PYTHON: on a CPU that it was not built for, importing the module raises
 # ImportError, before anything runs that such a CPU lacks.
 set -euo pipefail

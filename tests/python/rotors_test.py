@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rotors against matrices: the exponential of a matrix by its series."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes, trajectories, pictures and pages: against worlds, files and numbers known beforehand."""
 
 import html

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shapes against closed forms, numeric gradients and random points."""
 
 import copy

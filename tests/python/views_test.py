@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """numpy's views of a world: no copies, not writable, and never freed memory."""
 
 import gc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Worlds against closed forms, and what they promise: numbers, threads, copies, errors."""
 
 import copy

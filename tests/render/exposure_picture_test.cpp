@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures through a lens, of a thick slice, of several slices and with an open shutter, held
 // against what can be worked out by hand; and the noise target.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Noise: that it differs from frame to frame, and what it is.
 #include <gtest/gtest.h>
 

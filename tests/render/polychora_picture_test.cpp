@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stills of regular polychora as they are declared, whose slice at w = 0 two cells share in whole
 // faces: one normal a face, however the vertices are listed and however rays are followed.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An open shutter held against many pictures of closed ones, and against what can be worked out by
 // hand.
 #include <gtest/gtest.h>

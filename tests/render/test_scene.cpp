@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/render/test_scene.hpp"
 
 #include <OpenEXR/ImfChannelList.h>

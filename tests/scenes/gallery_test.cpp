@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The gallery's scenes show what they say they show.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hashes of where the gallery's and generated scenes are after some steps, and of what their frames
 // and trajectories hold: the same from g++ and clang++, on Debian 12 and 13, that is, with other
 // compilers, mathematical libraries, Embrees and HDF5s. One that moves is a change of results: to

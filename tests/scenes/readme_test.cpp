@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Links in the READMEs and other pages lead where they say: files exist, and a function named in a
 // link is in the file.
 #include <gtest/gtest.h>

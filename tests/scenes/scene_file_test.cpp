@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes as programs use them: names, worlds, simulating, and what is told on the way.
 #include "scenes/scene_file.hpp"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Watches two long jobs: memory that grows, files that stay open, energy that comes from nowhere.
 
 usage: soak.py PROGRAM SECONDS CSV

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Opens pages of `tesserae view` in a real browser, without a screen and without a graphics card."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Holds pages of `tesserae view` against the renderer, in a real browser.
 
     python3 check_pages.py PROGRAM FOLDER

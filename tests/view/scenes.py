@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenes by which pages are held against the renderer."""
 
 LIGHT = """

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/constraints/contact_row.hpp"
 
 #include <Eigen/LU>

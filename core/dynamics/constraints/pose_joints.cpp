@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/constraints/pose_joints.hpp"
 
 #include <algorithm>

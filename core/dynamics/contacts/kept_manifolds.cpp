@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/contacts/kept_manifolds.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/islands/colouring.hpp"
 
 #include <algorithm>

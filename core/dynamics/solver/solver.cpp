@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/solver.hpp"
 
 #include "core/dynamics/solver/coloured_rows.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/step/schedule.hpp"
 
 #include "core/dynamics/contacts/pairs.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rigid bodies in four dimensions: worlds, scenes and pictures.
 
 Axes are x, y, z, w; planes always xy, xz, xw, yz, yw, zw. Metres, seconds, kilograms, radians.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 import os
 from typing import (Any, Callable, Iterable, Iterator, List, Literal, Mapping, Optional, Sequence, Tuple, TypedDict,
                     Union, overload)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pages to look around in, as `tesserae view` makes them."""
 
 import html as _html

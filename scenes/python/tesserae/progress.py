@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What progress=True shows: a line on standard error that is written over."""
 
 import sys

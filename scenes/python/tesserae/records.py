@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What worlds, scenes and films tell, as named tuples."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rotations of four-dimensional space as rotors.
 
 A rotor has the eight components s, xy, xz, xw, yz, yw, zw, p and turns v to R v R~. All functions

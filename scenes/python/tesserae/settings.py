@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Settings over a scene's keys, as text of `--set`."""
 
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only file that includes Eigen's matrix functions, which compile slowly.
 #include <gtest/gtest.h>
 

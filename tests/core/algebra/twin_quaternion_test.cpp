@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/algebra/twin_quaternion.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a new shape costs: an ellipsoid's room, with what any convex body can be given for its
 // distance and rim, and its view for the general pair function. Nothing else knows of it.
 #include <gtest/gtest.h>

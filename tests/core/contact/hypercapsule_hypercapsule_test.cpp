@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/contact/hypercapsule_hypercapsule.hpp"
 
 #include "tests/core/contact/pair_sets.hpp"

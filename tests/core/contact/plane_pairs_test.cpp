@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/core/contact/pair_sets.hpp"
 
 // Against a plane the truth is a list: in long double, the ends or corners of the body and their

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The general pair function: against the exact pairs of boxes, against zonotopes and hulls in long
 // double, and on what rests.
 #include "core/contact/convex_views.hpp"

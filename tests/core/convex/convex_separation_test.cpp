@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/convex/convex_separation.hpp"
 
 #include "tests/core/convex/convex_oracle.hpp"

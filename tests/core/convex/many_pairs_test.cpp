@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances and depths of 10^5 pairs a kind, random and nearly degenerate, against other roads: in
 // long double, and none of them a search by support functions.
 #include "core/convex/placed_hull.hpp"

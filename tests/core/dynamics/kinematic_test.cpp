@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies whose position, rotation or both are fixed move at their given velocities: what they do to
 // others, and that nothing is done to them.
 #include <gtest/gtest.h>

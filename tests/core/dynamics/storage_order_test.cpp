@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies are numbered by their place in storage, and contacts are solved in the order of the
 // numbers: the order within an island is part of the result, that of different islands is not.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every operation on several numbers against the same on plain ones, by bits.
 #include "core/simd/simd.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // film SCENE.toml FOLDER: simulates a scene, renders a picture of its last frame, and steps a world
 // beside it. Every public header is used.
 #include <cstdio>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The notebooks run from top to bottom; what they show is asserted in them."""
 
 import importlib.util

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stubs as a type checker sees them, where mypy is."""
 
 import importlib.util

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images written with OpenEXR's own interface in many forms, against the pixels that went in.
 #include "render/file/image_pixels.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Previews of any size: means over areas, whoever renders which part of the picture.
 #include "render/file/preview.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clear glass takes no light, so that in an even sky none of it is seen: all shapes, alone and in
 // heaps, and what is cut off of paths between mirrors and in glass.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/scene/film_list.hpp"
 
 #include <gtest/gtest.h>

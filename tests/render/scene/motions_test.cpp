@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What moves while the shutter is open: where it is at a time, what holds it meanwhile, and that
 // rays of any time meet it there.
 #include "render/scene/motions.hpp"

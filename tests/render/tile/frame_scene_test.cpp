@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/tile/frame_scene.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a hash depends on and what not, against files rewritten in other forms and the manifest
 // recomputed from its description.
 #include "scenes/compare/content.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Differences that were put into files on purpose, and whether they are found where they are.
 #include "scenes/compare/difference.hpp"
 

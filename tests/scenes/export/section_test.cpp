@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meshes of bodies' sections, held against what their shapes say of themselves.
 #include "scenes/export/section.hpp"
 

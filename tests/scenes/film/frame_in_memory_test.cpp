@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures in memory, against the files of a film and against each other.
 #include "scenes/film/frame_in_memory.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What simulating stores of joints.
 #include <gtest/gtest.h>
 

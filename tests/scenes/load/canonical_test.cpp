@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The canonical text of a scene, which trajectories and folders of frames hold, is read again: by
 // `tesserae status`, `export` and `view`, and compared with what other runs have written.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Polychora and products of balls in scene files: what their keys make, and which bodies share it.
 #include <gtest/gtest.h>
 

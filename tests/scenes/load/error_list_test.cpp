@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All errors of a scene file are told at once, each in its place, and lead to no others.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is refused of [[joint]], and how it is said.
 #include <gtest/gtest.h>
 

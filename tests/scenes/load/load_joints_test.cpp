@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the joints of scene files are, by closed forms. The balls have radius r and mass m, and so
 // the inertia m r^2 / 3 in every plane.
 #include <gtest/gtest.h>

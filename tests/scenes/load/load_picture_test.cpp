@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the keys of materials, lights and frames mean.
 #include <gtest/gtest.h>
 

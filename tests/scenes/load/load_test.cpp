@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scenes/load/load.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference of scene files is what the program reads, and the manual's page is that.
 #include "scenes/load/reference.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text over previews: letters from a font, laid over pictures, the same by every way to a preview.
 #include "scenes/overlay/overlay.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies that start inside each other are told, against every two of them tried.
 #include "scenes/plan/overlaps.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is said never steers a terminal, and never ends the work.
 #include "scenes/process/messages.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What --version says. Scripts of farms compare its first line.
 #include "scenes/process/version.hpp"
 

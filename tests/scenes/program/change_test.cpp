@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A change of mind: `run` again in the same folder with another look, or for longer.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

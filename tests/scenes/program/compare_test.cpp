@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `tesserae hash` and `tesserae diff` as a user meets them: lines, exit statuses, threads.
 #include <gtest/gtest.h>
 

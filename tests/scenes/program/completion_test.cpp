@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a shell offers after "tesserae": asked of the shells themselves.
 #include "scenes/program/completion.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A finished simulation that is wanted longer: the same command continues it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is damaged is made again, and what is left over goes: frames, previews, parts, films.
 #include <gtest/gtest.h>
 

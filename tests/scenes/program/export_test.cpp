@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `tesserae export` as another program meets its files.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films for a farm: job scripts, and how far a film is. A real Slurm: tests/slurm.sh.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Some frames of a film: the simulation goes as far as they need, and on from there later.
 #include <gtest/gtest.h>
 

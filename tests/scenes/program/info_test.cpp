@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `tesserae info` says of files, as text and as JSON.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signals and kills at any moment lose nothing: the same command ends with the same bytes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A film folder and an unfinished trajectory that the program made before its files told their
 // versions and their bodies: they stay as useful as they were. tests/scenes/kept/kept.toml tells
 // the commands that made them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page of man says what --help says, in roff that its readers accept.
 #include "scenes/program/man_page.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cryptomattes of films: what their manifests call bodies and materials.
 #include "render/mattes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors of motion in films: what a frame takes from the frames beside it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film at the end, and what ffmpeg's own tools say of it.
 #include <gtest/gtest.h>
 

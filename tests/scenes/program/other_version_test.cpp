@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that another version of the law of motion, or of pictures, has made.
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIntAttribute.h>

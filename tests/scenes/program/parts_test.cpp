@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A frame rendered in parts and joined is the frame rendered at once.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How large previews and the film are, in everything that makes or looks at them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

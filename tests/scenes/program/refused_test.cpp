@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is refused is told with its path and leaves nothing behind.
 #include <gtest/gtest.h>
 

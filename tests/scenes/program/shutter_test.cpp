@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a film with an open shutter takes from its trajectory.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

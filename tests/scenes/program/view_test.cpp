@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `tesserae view` as a program: what it makes of scenes and trajectories, and what it refuses.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties that hold for every scene, of random ones. Where one does not, the smallest scene that
 // still shows it is printed as a scene file.
 #include "tests/scenes/properties/properties.hpp"

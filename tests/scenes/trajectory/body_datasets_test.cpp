@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a trajectory says of its bodies, read through HDF5's own interface.
 #include "scenes/trajectory/body_datasets.hpp"
 
@@ -5,6 +6,7 @@
 
 #include <cstring>
 #include <limits>
+#include <regex>
 
 #include "tests/scenes/program/program.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a trajectory says of joints.
 #include "scenes/trajectory/joint_datasets.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finished files that are continued for longer.
 #include <gtest/gtest.h>
 

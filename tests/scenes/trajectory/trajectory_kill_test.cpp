@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a SIGKILL leaves, at every place where it can fall: a writer runs under ptrace and is
 // stopped before each of its writes, where the file is just what a kill at that moment would leave.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files made with HDF5's own interface to be refused, and leftovers that must not be lost.
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A page's joints: which it draws, where they are on its bodies, and when they are broken.
 #include "scenes/view/page_joints.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page is one file that needs nothing else, and what a scene says stays text in it.
 #include "scenes/view/page.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A page's poses are those of the trajectory, to a quarter of a pixel, in few bits.
 #include "scenes/view/pose_tracks.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/kernels/kernels.hpp"
 #include "core/dynamics/solver/kernels/place.hpp"
 #include "core/dynamics/solver/kernels/row.hpp"

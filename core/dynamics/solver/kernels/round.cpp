@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/kernels/points.hpp"
 #include "core/dynamics/solver/kernels/round_sweep.hpp"
 #include "core/dynamics/solver/kernels/sixteen.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/kernels/sixteen.hpp"
 
 #include "core/dynamics/solver/kernels/general_start.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/constraints/frame_joint.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies that roll and wobble on rims, against closed forms.
 #include "core/dynamics/contacts/rims.hpp"
 

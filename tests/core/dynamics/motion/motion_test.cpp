@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gravity that acts in part, and damping, by closed forms.
 #include "core/dynamics/motion/motion.hpp"
 

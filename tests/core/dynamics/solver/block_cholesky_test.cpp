@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/block_cholesky.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/solver/first_loads.hpp"
 
 #include <gtest/gtest.h>
