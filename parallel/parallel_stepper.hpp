@@ -11,8 +11,8 @@ namespace tesserae::parallel {
 class ThreadedSchedule;
 class Trace;
 
-/// core's Stepper on several threads: the same step, on a ThreadedSchedule, with the same bits at any
-/// number of threads.
+/// core's Stepper on several threads: the same step, on a ThreadedSchedule, with the same bits at
+/// any number of threads.
 class ParallelStepper {
   public:
     /// @throws InputError   as make_simulation()

@@ -81,7 +81,8 @@ inline std::string first_difference(const Bodies& bodies, const PhysicsSettings&
         serial.step(dt);
         threads.run([&] { world.step(dt); });
         const std::string found = difference_of(serial, world);
-        if (!found.empty()) return fmt::format("Stepper and ParallelStepper, step {}: {}", i, found);
+        if (!found.empty())
+            return fmt::format("Stepper and ParallelStepper, step {}: {}", i, found);
     }
     return "Stepper and ParallelStepper run again do not differ";
 }

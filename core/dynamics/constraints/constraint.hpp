@@ -44,7 +44,7 @@ struct Constraint {
     double most = 0;  ///< see ImpulseSet
     /// Velocity by which a row gives way per impulse on it [1/kg, 1/(kg m^2)].
     double compliance = 0;
-    int size = 0;  ///< number of rows
+    int size = 0;              ///< number of rows
     bool holds_point = false;  ///< its rows are unit forces along the world's axes: all of a point
     std::array<Wrench, kMostRows> rows;
     RowVector bias;  ///< velocities at which a load aims [m/s, rad/s]

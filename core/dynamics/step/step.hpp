@@ -20,8 +20,7 @@ struct LeftFiniteRange : RunError {
 /// @throws InputError   a pair of shapes that can meet has no contacts yet; arrays of different
 ///                      lengths; 2^32 bodies or more; see make_joints()
 Simulation make_simulation(Bodies bodies, const PhysicsSettings& settings,
-                           std::vector<Joint> joints = {},
-                           std::span<const BodyId> turned = {});
+                           std::vector<Joint> joints = {}, std::span<const BodyId> turned = {});
 
 /// Sizes the step's arrays of bodies.
 /// @throws InputError   dt is not finite or not > 0

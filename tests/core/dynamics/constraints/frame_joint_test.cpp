@@ -59,8 +59,8 @@ TEST(Weld, OfTwoHalvesMovesAsTheWhole) {
         }
         Stepper one(whole, falling_settings());
         Stepper two(make_simulation(halves, falling_settings(),
-                                  {frame_joint(halves, 0, 1, Vec4::Zero(), kAllHeld)}),
-                  coloured_from);
+                                    {frame_joint(halves, 0, 1, Vec4::Zero(), kAllHeld)}),
+                    coloured_from);
         for (int i = 0; i < 240; ++i) {
             one.step(kStep), two.step(kStep);
             const JointState state =
@@ -81,8 +81,8 @@ TEST(Weld, HoldsAShelf) {
         Bodies bodies;
         add(bodies, box_type({1, 0.2, 0.5, 0.5}, 3), {1, 0, 0, 0.4});
         Stepper world(make_simulation(bodies, falling_settings(),
-                                    {frame_joint(bodies, kWorld, 0, Vec4::Zero(), kAllHeld)}),
-                    coloured_from);
+                                      {frame_joint(bodies, kWorld, 0, Vec4::Zero(), kAllHeld)}),
+                      coloured_from);
         for (int i = 0; i < 240; ++i) world.step(kStep);
         const Wrench wrench = world.joint_impulses()[0];
         EXPECT_NEAR(wrench.impulse[1], 30 * kStep, 1e-4 * kStep);
@@ -122,9 +122,10 @@ TEST(Hinge, LetsAWheelSpinManyTimesRound) {
         Bodies bodies;
         add(bodies, box_type({1, 0.7, 0.3, 0.4}, 2), {0, 0, 0, 0}, Vec4::Zero(),
             {20, 0, 0, 0, 0, 0});
-        Stepper world(make_simulation(bodies, falling_settings(),
-                                    {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
-                    coloured_from);
+        Stepper world(
+            make_simulation(bodies, falling_settings(),
+                            {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
+            coloured_from);
         for (int i = 0; i < 480; ++i) {
             world.step(kStep);
             const JointState state = state_of(world.simulation().joints.all[0], world.bodies(), {});
@@ -144,9 +145,10 @@ TEST(Hinge, SwingsAsAPendulum) {
         constexpr double kMass = 2, kArm = 0.5;
         Bodies bodies;
         add(bodies, box_type({1, 0.2, 0.3, 0.4}, kMass), {kArm, 0, 0, 0});
-        Stepper world(make_simulation(bodies, falling_settings(),
-                                    {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
-                    coloured_from);
+        Stepper world(
+            make_simulation(bodies, falling_settings(),
+                            {frame_joint(bodies, kWorld, 0, Vec4::Zero(), all_but({kXY}))}),
+            coloured_from);
         const double inertia = kMass * (1 + 0.04) / 12 + kMass * kArm * kArm;
         double angle = 0, speed = 0;
         for (int i = 0; i < 480; ++i) {

@@ -201,8 +201,9 @@ TEST(PointJoint, KeepsMomentum) {
                 {p[0], p[1], p[2], p[3], q[0], q[1]});
             add(bodies, box_type({0.4, 0.4, 0.5, 0.3}, 1), on_a - on_b, random_vector(random, 1),
                 {q[2], q[3], p[1], p[0], q[1], p[3]});
-            Stepper world(make_simulation(bodies, without_gravity(), {point_joint(0, on_a, 1, on_b)}),
-                        coloured_from);
+            Stepper world(
+                make_simulation(bodies, without_gravity(), {point_joint(0, on_a, 1, on_b)}),
+                coloured_from);
             const Vec4 momentum = total_momentum(world.bodies());
             const Bivector turning = total_angular_momentum(world.bodies());
             run(world, 240);
@@ -300,8 +301,8 @@ TEST(Joint, IsNotTornWhereABodyIsStopped) {
             add(bodies, sphere_type(kRadius), {x, 0, 0, 0}, {kSpeed, 0, 0, 0});
             add(bodies, sphere_type(kRadius), {x, 0.6, 0, 0}, {kSpeed, 0, 0, 0});
             Stepper world(make_simulation(bodies, without_gravity(),
-                                        {point_joint(1, {0, 0.3, 0, 0}, 2, {0, -0.3, 0, 0})}),
-                        coloured_from);
+                                          {point_joint(1, {0, 0.3, 0, 0}, 2, {0, -0.3, 0, 0})}),
+                          coloured_from);
             double torn = 0;
             for (int i = 0; i < 4; ++i) {
                 world.step(kStep);
@@ -324,8 +325,8 @@ TEST(Joint, KeepsItsRowsVelocitiesInAnImpact) {
                 spin);
         add(bodies, sphere_type(0.3, 2, 0, 1), {-2.2, 0.5, 0.1, -0.1}, {12, 0, 0, 0});
         Stepper world(make_simulation(bodies, without_gravity(),
-                                    {point_joint(0, {0, 0.5, 0, 0}, 1, {0, -0.5, 0, 0})}),
-                    coloured_from);
+                                      {point_joint(0, {0, 0.5, 0, 0}, 1, {0, -0.5, 0, 0})}),
+                      coloured_from);
         StageCopy before(Stage::kSolveImpacts), after(Stage::kIntegrateVelocities);
         const auto rows_of = [](const StepData& step) -> RowVector {
             const Constraint& c = step.constraints[0];
@@ -358,9 +359,10 @@ TEST(Joint, HandsAnElasticImpactOn) {
         Bodies bodies;
         for (const double y : {-0.5, 0.5}) add(bodies, sphere_type(0.3, 1, 0, 1), {0, y, 0, 0});
         add(bodies, sphere_type(0.3, 2, 0, 1), {-1.5, 0.5, 0.1, -0.1}, {6, 0, 0, 0});
-        Stepper world(make_simulation(bodies, without_gravity(),
-                                    {point_joint(0, 0.5 * Vec4::UnitY(), 1, -0.5 * Vec4::UnitY())}),
-                    coloured_from);
+        Stepper world(
+            make_simulation(bodies, without_gravity(),
+                            {point_joint(0, 0.5 * Vec4::UnitY(), 1, -0.5 * Vec4::UnitY())}),
+            coloured_from);
         const double before = energy_of(world);
         run(world, 120);
         EXPECT_NEAR(energy_of(world), before, 0.01 * before) << coloured_from.held;

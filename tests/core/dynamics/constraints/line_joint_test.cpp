@@ -39,8 +39,8 @@ TEST(LineJoint, PullsWhatWhirlsByTheClosedForm) {
         const Vec4 out = Vec4(1, 2, -1, 3).normalized(), along = Vec4(3, 0, 0, -1).normalized();
         add(bodies, sphere_type(0.2, kMass), kRadius * out, kSpeed * along);
         Stepper world(make_simulation(bodies, without_gravity(),
-                                    {to_world(0, LineJoint{kCentre, kCentre, kRadius})}),
-                    coloured_from);
+                                      {to_world(0, LineJoint{kCentre, kCentre, kRadius})}),
+                      coloured_from);
         constexpr int kSteps = 240;
         for (int i = 0; i < kSteps; ++i) {
             world.step(kStep);

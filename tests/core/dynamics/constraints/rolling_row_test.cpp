@@ -100,7 +100,7 @@ TEST(RollingFriction, StopsABallAndLeavesItAtRest) {
         add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
         const BodyId id = add_ball(bodies, ball);
         Stepper world(make_simulation(bodies, both_settings()[round % 2]),
-                    round / 2 % 2 ? 1 : kNoneColoured);
+                      round / 2 % 2 ? 1 : kNoneColoured);
         const double a = ball.deceleration(), time = ball.speed / a;
         run(world, static_cast<int>(std::ceil(1.1 * time / kStep)));
         EXPECT_LT(world.bodies().velocity[id].norm(), 1e-6 * ball.speed) << round;
@@ -155,7 +155,7 @@ TEST(RollingFriction, SlowsABallThatTwistsInPlace) {
         const BodyId id = add_ball(bodies, ball);
         bodies.angular_velocity[id] = (first / norm(spin)) * spin;
         Stepper world(make_simulation(bodies, both_settings()[round % 2]),
-                    coloured ? 1 : kNoneColoured);
+                      coloured ? 1 : kNoneColoured);
         run(world, 10 + round);
         const double now = std::max(0.0, first - a * (10 + round) * kStep);
         EXPECT_LT(norm(world.bodies().angular_velocity[id] - (now / norm(spin)) * spin),

@@ -18,7 +18,7 @@ constexpr double kMotionRounding = 1e-11;
 
 /// A sphere (body 1) on or above the plane y = 0 (body 0).
 Stepper sphere_on_plane(double friction, double restitution, const Vec4& gravity, double gap,
-                      const Vec4& velocity) {
+                        const Vec4& velocity) {
     Bodies bodies;
     add(bodies, plane_type(Vec4::UnitY(), 0, friction, restitution));
     add(bodies, sphere_type(kRadius, 2, friction, restitution), {0, kRadius + gap, 0, 0}, velocity);
