@@ -160,7 +160,10 @@ void read_one_free(Keys& keys, JointDescription& joint, std::size_t coordinate) 
 void read_general(Keys& keys, JointDescription& joint) {
     read_anchor(keys, joint);
     if (const auto rotor = keys.take("rotor")) joint.rotation = rotor_of(rotor, "joint.rotor");
-    for (const py::handle name : keys.require("free", "a list such as [\"x\", \"yz\"]"))
+    const py::object free = keys.require("free", "a list such as [\"x\", \"yz\"]");
+    if (py::isinstance<py::str>(free))
+        throw InputError("general joint: free: expected a list such as [\"x\", \"yz\"]");
+    for (const py::handle name : free)
         joint.free = static_cast<std::uint16_t>(
             joint.free | 1u << place_in(kCoordinates, name.cast<std::string>(), "free coordinate"));
     read_coordinates(keys, "limits", joint.free, joint.limits, limits_of);

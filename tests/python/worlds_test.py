@@ -254,6 +254,7 @@ class Joints(unittest.TestCase):
             (("hinge",), {"anchor": [0] * 4, "plane": "xy", "length": 3}, "unknown key 'length'.*anchor, plane"),
             (("hinge",), {"anchor": [0] * 4, "plane": "xy", "motor": {"sped": 3}}, "joint.motor: unknown key 'sped'"),
             (("general",), {"anchor": [0] * 4, "free": ["x"], "limits": {"y": (0, 1)}}, "limits.y: this coordinate is held"),
+            (("general",), {"anchor": [0] * 4, "free": "zw"}, "free: expected a list"),
             (("general",), {"anchor": [0] * 4, "free": ["q"]}, 'free coordinate "q"'),
             (("point",), {"anchor": [0, 0, 0, np.nan]}, "anchor.*nan"),
             (("distance",), {}, "anchors"),
