@@ -71,7 +71,8 @@ struct Threads::Arena {
 };
 
 Threads::Threads(int count) : count_(count) {
-    if (count < 1) throw InputError(fmt::format("threads = {}: must be at least 1", count));
+    if (count < 1 || count > kMostThreads)
+        throw InputError(fmt::format("threads = {}: expected 1 to {}", count, kMostThreads));
     arena_ = std::make_unique<Arena>(count);
 }
 

@@ -10,11 +10,15 @@ namespace tesserae::parallel {
 /// groups (versions 1 and 2), rounded up, and Slurm's SLURM_CPUS_PER_TASK. At least 1.
 int granted_cores();
 
+/// More threads than this are taken for a mistake: each needs memory, and too many end the process.
+constexpr int kMostThreads = 1024;
+
 /// A number of threads for parallel work, which may be more than the cores. Where several such
 /// objects live at once, the least count limits all.
 class Threads {
   public:
-    /// @param count  >= 1, the calling thread included
+    /// @param count  the calling thread included
+    /// @throws InputError   count < 1 or > kMostThreads
     explicit Threads(int count);
     ~Threads();
     Threads(const Threads&) = delete;

@@ -11,7 +11,7 @@ namespace tesserae {
 /// share them, also while they are stepped at the same time. Where several such objects live at
 /// once, the least count limits all.
 /// @param count   the calling thread included; 0: as many as the cores that this process may use
-/// @throws InputError   count < 0
+/// @throws InputError   count < 0 or > 1024
 std::shared_ptr<Workers> threads(int count = 0);
 
 }  // namespace tesserae

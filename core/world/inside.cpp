@@ -114,6 +114,7 @@ bool World::Inside::has_joint(JointId joint) const {
 }
 
 BodyId World::Inside::place_of(BodyId body) const {
+    if (body == kWorld) throw InputError("body: is the world; expected the number of a body");
     if (!has(body))
         throw InputError(fmt::format("body {}: {}; expected one that the world has", body,
                                      body < bodies_.next() ? "was removed" : "was never added"));

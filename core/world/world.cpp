@@ -39,8 +39,9 @@ void check_place(const BodyType& type, const BodyState& state) {
                                       state.velocity == Vec4::Zero() &&
                                       state.angular_velocity == Bivector{};
     if (!is_bounded(type.shape) && !is_at_rest_at_origin)
-        throw InputError(fmt::format("state: a {} stands still at the origin; expected no state",
-                                     name_of(type.shape)));
+        throw InputError(
+            fmt::format("state: a {} stands still at the origin; expected zeros and a rotor of 1",
+                        name_of(type.shape)));
 }
 
 /// Returns the wrench about a body's centre of a force, or an impulse, at a point.
@@ -148,7 +149,7 @@ void World::set_arrays(std::span<const Vec4> position, std::span<const Rotor> ro
         try {
             check_place(bodies.type_of(static_cast<BodyId>(i)), states[i]);
         } catch (const InputError& error) {
-            throw InputError(fmt::format("row {}: {}", i, error.what()));
+            throw InputError(fmt::format("row {}, body {}: {}", i, ids()[i], error.what()));
         }
     }
     inside_->wake_all();

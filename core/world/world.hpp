@@ -80,6 +80,7 @@ class World {
                     std::span<const Vec4> velocity, std::span<const Bivector> angular_velocity);
 
     // ---- pushes ------------------------------------------------------------------------------
+    // What has a fixed position or rotation does not change that part of its motion by them.
 
     /// Changes a body's motion at once. It wakes the body.
     /// @param impulse   world [N s]

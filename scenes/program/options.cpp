@@ -5,12 +5,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include "parallel/threads.hpp"
 #include "scenes/generate/generate.hpp"
 
 namespace tesserae::scenes {
 namespace {
-
-constexpr int kMaxThreads = 1024;
 
 constexpr const char* kExitStatuses =
     "Exit status: 0 done; 1 failed while running, or diff: not equal, status, join: not complete; "
@@ -18,7 +17,7 @@ constexpr const char* kExitStatuses =
 
 void add_common(CLI::App& app, CommandLine& line) {
     app.add_option("--threads", line.threads, "threads (default: the cores granted to the process)")
-        ->check(CLI::Range(1, kMaxThreads));
+        ->check(CLI::Range(1, parallel::kMostThreads));
     app.add_flag("--quiet", line.quiet, "no progress line");
     app.add_flag("--json", line.json, "one JSON object on standard output, at the end");
 }

@@ -16,6 +16,19 @@ void add_errors(pybind11::module_& module) {
         "Something failed while it ran: a full disk, a body that left the finite range.";
 }
 
+/// What pybind11 says of an item of a list that has a wrong type names types of C++.
+void tell_wrong_types() {
+    pybind11::register_exception_translator([](std::exception_ptr error) {
+        try {
+            std::rethrow_exception(error);
+        } catch (const pybind11::cast_error&) {
+            PyErr_SetString(PyExc_TypeError,
+                            "an argument, or an item of one, has a wrong type; the function's "
+                            "docstring tells what is expected");
+        }
+    });
+}
+
 }  // namespace tesserae::python
 
 PYBIND11_MODULE(_tesserae, module) {
@@ -23,6 +36,7 @@ PYBIND11_MODULE(_tesserae, module) {
     pybind11::options options;
     options.disable_function_signatures();
     add_errors(module);
+    tell_wrong_types();
     add_rotors(module);
     add_shapes(module);
     add_worlds(module);

@@ -128,12 +128,7 @@ tesserae.InputError: ...
 
 }  // namespace
 
-std::shared_ptr<Workers> workers_of(int count) {
-    if (count < 0)
-        throw InputError(
-            fmt::format("threads = {}: expected a number > 0, or 0 for all cores", count));
-    return threads(count);
-}
+std::shared_ptr<Workers> workers_of(int count) { return threads(count); }
 
 void SharedWorld::set_threads(int threads) {
     get().set_workers(workers_of(threads));
@@ -145,14 +140,14 @@ BodyId body_of(const py::object& body, const char* name) {
     const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(body.ptr()));
     if (!number) {
         PyErr_Clear();
-        throw py::type_error(fmt::format("{}: expected a body's number, got {}", name,
-                                         py::repr(body).cast<std::string>()));
+        throw py::type_error(
+            fmt::format("{}: expected a number, got {}", name, py::repr(body).cast<std::string>()));
     }
     const auto id = PyLong_AsLongLong(number.ptr());
     // What is too large for a number is no body's either; the world says so.
     if (PyErr_Occurred() != nullptr) PyErr_Clear();
     if (id < 0 || id >= kWorld)
-        throw InputError(fmt::format("{} = {}: the world has no such body", name,
+        throw InputError(fmt::format("{} = {}: the world has none with this number", name,
                                      py::repr(body).cast<std::string>()));
     return static_cast<BodyId>(id);
 }

@@ -44,6 +44,7 @@ TEST(WorldThreads, AreCounted) {
     EXPECT_EQ(threads(3)->count(), 3);
     EXPECT_GE(threads()->count(), 1);
     EXPECT_THROW(threads(-1), InputError);
+    EXPECT_THROW(threads(1025), InputError);
 }
 
 TEST(WorldThreads, SeveralWorldsShareThem) {

@@ -321,7 +321,7 @@ class Errors(unittest.TestCase):
             (lambda: world.set_state(ball, velocity=[np.inf, 0, 0, 0]), "velocity.*inf"),
             (lambda: world.state(5), "5"),
             (lambda: world.state(-1), "-1"),
-            (lambda: world.state(2**70), "no such body"),
+            (lambda: world.state(2**70), "none with this number"),
             (lambda: world.step(0), "0"),
             (lambda: world.step(steps=0), "steps = 0"),
             (lambda: world.ray([0] * 4, [0] * 4), "direction"),
