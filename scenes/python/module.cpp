@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include "core/error.hpp"
+#include "scenes/process/version.hpp"
 #include "scenes/python/topics.hpp"
 
 namespace tesserae::python {
@@ -37,6 +38,7 @@ PYBIND11_MODULE(_tesserae, module) {
     options.disable_function_signatures();
     add_errors(module);
     tell_wrong_types();
+    module.attr("__version__") = tesserae::scenes::program_version();
     add_rotors(module);
     add_shapes(module);
     add_worlds(module);

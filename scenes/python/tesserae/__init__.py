@@ -15,6 +15,7 @@ from . import _cpu  # first: raises ImportError on a CPU that this was not built
 from . import _tesserae, records
 from ._tesserae import (Cubinder, Duocylinder, Duoprism, Hyperbox, Hypercapsule, Hyperplane, Hypersphere,
                         InputError, Picture, Polychoron, RunError, Scene, Shape, Spherinder, Trajectory, World)
+from ._tesserae import __version__
 from . import rotor
 from .page import Page
 from .records import (BodyState, BodyType, ContactChanges, FilmResult, JointReading, Nearest, RayHit,

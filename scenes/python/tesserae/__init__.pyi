@@ -19,6 +19,7 @@ from .records import SimulationResult as SimulationResult
 from .records import StepReport as StepReport
 
 __all__: List[str]
+__version__: str
 
 Array = npt.NDArray[np.float64]
 Ids = npt.NDArray[np.uint32]
