@@ -162,6 +162,15 @@ TEST(WorldQueries, SeeWhatWasMovedAddedAndRemoved) {
     EXPECT_THROW(world.overlapping(Hyperplane{}, Vec4::Zero()), InputError);
 }
 
+TEST(WorldQueries, OfBodiesInEachOtherTheDeepestIsNearest) {
+    World world(without_gravity());
+    for (int i = 0; i < 40; ++i)
+        world.add(sphere_type(1 + 0.1 * i), {{0.05 * i, 0, 0, 0}, {}, Vec4::Zero(), {}});
+    const auto nearest = world.nearest(Vec4::Zero());
+    EXPECT_EQ(nearest->body, 39u);
+    EXPECT_NEAR(nearest->distance, 0.05 * 39 - 4.9, 1e-12);
+}
+
 /// A walk that is ended by the nearest body looks at few of many.
 TEST(BallTree, AWalkLooksAtFewBodies) {
     RandomGeometry random(4);

@@ -125,9 +125,12 @@ TEST(World, WhatStaysGoesOnWithTheSameBitsWhenSomethingFarAwayIsRemoved) {
         other.join(description, body, last);
         last = body;
     }
-    for (int i = 0; i < 200; ++i) alone.step(), other.step();
+    // One goes while boxes lie on each other awake, one while some sleep.
+    for (int i = 0; i < 60; ++i) alone.step(), other.step();
+    other.remove(far);
+    for (int i = 0; i < 140; ++i) alone.step(), other.step();
     EXPECT_TRUE(alone.is_asleep(alone.ids()[ids.size() - 6]));
-    other.remove(far), other.remove(link);
+    other.remove(link);
     EXPECT_FALSE(other.has_joint(joint));
     for (int i = 0; i < 200; ++i) {
         alone.step(), other.step();
