@@ -128,15 +128,18 @@ std::size_t World::Inside::place_of_joint(JointId joint) const {
     return joints_.place_of(joint);
 }
 
-/// Those who look at arrays keep them as they are now: the change is made in copies.
 void World::Inside::begin_change() {
     contacts();
-    if (stepper_.use_count() > 1) {
-        stepper_ = std::make_shared<Stepper>(Simulation(*simulation_));
-        simulation_ = &stepper_->simulation();
-    }
     is_stale_ = true;
     has_tree_ = false;
+}
+
+/// Those who look at arrays keep them as they are now: the change is made in copies.
+void World::Inside::begin_change_of_bodies() {
+    begin_change();
+    if (stepper_.use_count() == 1) return;
+    stepper_ = std::make_shared<Stepper>(Simulation(*simulation_));
+    simulation_ = &stepper_->simulation();
 }
 
 std::uint32_t World::Inside::place_of_type(const BodyType& type) {
@@ -153,7 +156,7 @@ std::uint32_t World::Inside::place_of_type(const BodyType& type) {
 }
 
 BodyId World::Inside::add(const BodyType& type, const BodyState& state) {
-    begin_change();
+    begin_change_of_bodies();
     const std::uint32_t place = place_of_type(type);
     const BodyId id = bodies_.add();
     Bodies& bodies = simulation_->bodies;
@@ -172,7 +175,7 @@ BodyId World::Inside::add(const BodyType& type, const BodyState& state) {
 
 void World::Inside::remove(BodyId place) {
     wake(place);
-    begin_change();
+    begin_change_of_bodies();
     removed_.resize(bodies_.size());
     removed_[place] = 1;
     const std::vector<Joint>& joints = simulation_->joints.all;

@@ -92,6 +92,7 @@ class World::Inside {
   private:
     std::uint32_t place_of_type(const BodyType& type);
     void begin_change();
+    void begin_change_of_bodies();
     void take_out_removed();
     void wake_island(BodyId root);
     StepReport do_step(double dt);

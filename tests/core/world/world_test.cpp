@@ -291,6 +291,34 @@ TEST(World, ViewsOfItsArraysGoOnThroughStepsAndOutliveChanges) {
     EXPECT_EQ(arrays.position.size(), world.size());
 }
 
+/// In a world in which nothing turned so far: that is computed anew.
+TEST(World, ViewsGoOnThroughAllChangesButThoseOfTheBodies) {
+    World world(without_gravity());
+    const BodyId ball = world.add(sphere_type(1)),
+                 other = world.add(sphere_type(1), {{5, 0, 0, 0}});
+    world.step();
+    const BodyArrays arrays = world.arrays();
+    const auto expect_live = [&](const char* after) {
+        for (int i = 0; i < 2; ++i) {
+            world.step();
+            EXPECT_EQ(arrays.position[0], world.state(ball).position) << after;
+            EXPECT_EQ(arrays.rotor[0], world.state(ball).rotor) << after;
+            EXPECT_EQ(arrays.angular_velocity[0], world.state(ball).angular_velocity) << after;
+        }
+    };
+    const Rotor turned = exp({0.3, 0, 0, 0, 0, 0});
+    world.set_state(ball, {.position = {0, 1, 0, 0}, .rotor = turned, .velocity = {0, 0, 0, 1}});
+    EXPECT_EQ(world.state(ball).rotor, turned);
+    expect_live("set_state");
+    world.apply_torque(ball, {1, 0, 0, 0, 0, 0});
+    expect_live("apply_torque");
+    EXPECT_NE(world.state(ball).angular_velocity.xy, 0);
+    const JointId rope = world.join({.type = JointType::kRope, .length = 9}, ball, other);
+    expect_live("join");
+    world.remove_joint(rope);
+    expect_live("remove_joint");
+}
+
 TEST(World, LooksAtItsArraysChangeNoBit) {
     World seen = busy_world(), unseen = busy_world();
     const BodyArrays arrays = seen.arrays();
