@@ -19,6 +19,7 @@ expect() {
 }
 
 expect "$PWD" '"", false'  # no repository
+command -v git >/dev/null || exit 0
 git init -q
 expect "$PWD" '"", false'  # no commit yet
 echo 1 >file

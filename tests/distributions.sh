@@ -77,10 +77,11 @@ hash_of() {
         failed+=("$1 $2: no hash")
 }
 
-# package SUITE: packs the program and the library, and installs both in a new system in which nothing
-# was built: the program alone, then what builds an example with component core.
+# package SUITE: packs the program, the module and the library, and installs them in a new system in
+# which nothing was built: the program alone, the module, then what builds an example with component core.
 package() {
     local user=$1.user
+    step "$1" build-module '. scenes/setup.sh && build "$root/build/release" tesserae_python_package'
     step "$1" package 'rm -rf build/packages && cpack --config build/release/CPackConfig.cmake -B build/packages &&
         for file in build/packages/*.deb; do dpkg-deb --info $file && dpkg-deb --contents $file || exit; done'
     rm -rf --one-file-system "${folder:?}/$user"
@@ -91,6 +92,10 @@ package() {
     step "$user" install 'apt-get update -qq && apt-get install -y -qq --no-install-recommends ./tesserae_*.deb \
         fonts-dejavu-core && tesserae --version'
     hash_of "$user" package tesserae first.toml
+    step "$user" module 'apt-get install -y -qq --no-install-recommends ./python3-tesserae_*.deb && python3 -c "
+import tesserae as ts
+world = ts.Scene.read(\"first.toml\").world()
+assert world.step().contacts >= 0 and len(ts.Trajectory(\"out/film/trajectory.h5\")) > 1"'
     step "$user" library 'apt-get install -y -qq --no-install-recommends ./tesserae-dev_*.deb cmake make g++ &&
         cmake -S ball -B ball/build -DCMAKE_BUILD_TYPE=Release && cmake --build ball/build && ball/build/ball |
         grep "^0 touches 1"'
@@ -99,7 +104,7 @@ package() {
 # Ninja and ccache are new there: everything is compiled.
 for suite in "${suites[@]}"; do
     with_tree "$suite"
-    step "$suite" install '. scenes/setup.sh && install_packages "${packages[@]}" dpkg-dev'
+    step "$suite" install '. scenes/setup.sh && install_packages "${packages[@]}" dpkg-dev file'
     step "$suite" build-program '. scenes/setup.sh && build "$root/build/release" tesserae -DCMAKE_BUILD_TYPE=Release'
     step "$suite" scenes-run 'bash scenes/run.sh'
     package "$suite"

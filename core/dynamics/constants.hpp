@@ -139,16 +139,21 @@ constexpr int kFurther = 3;
 /// tolerance, and then sway for hundreds of steps or for ever. More: a step only costs more.
 constexpr int kLeastSweeps = 8;
 
+/// The residual that float's rounding leaves of a load, as a part of the speed that the largest of
+/// its impulses give a body, see speed_of_loads(). Usual 3e-7, five roundings. Less: loads of high
+/// pyramids are swept in vain. More: high towers sway.
+constexpr double kRoundingOfLoads = 3e-7;
+
 /// The growth of the residual (or of the tolerance, if that is larger) at which sweeps lead away
 /// and end, as a factor. Usual 100. More: bodies that friction jams between walls may leave at 100
 /// m/s, as each pair of sweeps makes their impulses half as large again. Less: conjugate directions
 /// that would converge end early.
 constexpr double kLedAway = 100;
 
-/// The part of the tolerance below which a load without conjugate directions may end before
-/// kLeastSweeps. Usual 0.1: one body on the ground takes a sweep or two. More: slow swaying ends
-/// there too. Less: bodies at rest cost as much as swaying ones.
-constexpr double kHardlyAnything = 0.1;
+/// The part of the tolerance below which a load may end before kLeastSweeps. Usual 0.03: what is at
+/// rest takes two or three sweeps. More: slow swaying ends there too. Less: bodies at rest cost as
+/// much as swaying ones.
+constexpr double kHardlyAnything = 0.03;
 
 /// The kinetic energy that a warm start may give an island, as a multiple of what gravity gives its
 /// bodies in a sub-step. Of a warm start with more, the part stays that takes the most energy.

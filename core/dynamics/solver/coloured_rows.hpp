@@ -8,6 +8,7 @@
 
 #include "core/dynamics/solver/conjugate_directions.hpp"
 #include "core/dynamics/solver/solve_island.hpp"
+#include "core/dynamics/solver/speed_of_loads.hpp"
 
 namespace tesserae {
 
@@ -73,6 +74,7 @@ class ColouredRows {
     template <class Directions = NoDirections>
     double sweep(Sweep sweep, const Directions& directions = {});
     double work() const;
+    double rounding_of_loads() const;
 
     ColouredIsland island_;
     const Threads& threads_;
@@ -165,22 +167,25 @@ double ColouredRows<Threads>::iterate(Pass pass, const Effort& effort) {
 }
 
 /// Sweeps along conjugate directions until neither a row's velocity, nor a body's by the next step
-/// along the direction, changes by more than the tolerance. The second condition is for motions of
-/// a whole wall, which no row sees.
+/// along the direction, changes by more than the tolerance, or than the rounding of the loads. The
+/// second condition is for motions of a whole wall, which no row sees.
 template <class Threads>
 template <class Instead>
 double ColouredRows<Threads>::iterate_along_directions(const Effort& effort,
                                                        const Instead& instead) {
     std::optional<ConjugateDirections<Threads>> directions;
     double residual = 0, smallest = std::numeric_limits<double>::infinity();
+    std::optional<double> of_loads;
+    const auto rounding = [&] {
+        if (!of_loads) of_loads = effort.enough < 0 ? -1 : rounding_of_loads();
+        return *of_loads;
+    };
     const auto goes_on = [&](int i) {
         return i < effort.sweeps || (i < effort.further && directions && directions->holds());
     };
     for (int i = 0; goes_on(i); ++i) {
         Sweep one = sweep_of(Pass::kSolve, effort, i);
         one.adjoint = one.backward;
-        // The residual is not asked for before the least number of sweeps.
-        one.measured &= i + 1 >= std::min(effort.least, effort.sweeps);
         if (one.backward && directions) directions->go_on();
         if (one.backward && !directions) directions.emplace(island_, threads_);
         residual = directions ? sweep(one, *directions) : sweep(one);
@@ -188,13 +193,27 @@ double ColouredRows<Threads>::iterate_along_directions(const Effort& effort,
         if (one.backward || !directions || i + 1 == std::max(effort.sweeps, effort.further))
             continue;
         const double left = std::max(residual, directions->find());
-        if (i + 1 >= effort.least && left <= effort.enough) break;
+        if (effort.is_done(i + 1, left) || (i + 1 >= effort.least && left <= rounding())) break;
     }
     if (directions && residual > effort.enough && directions->is_gain()) {
         directions->take_back();
         instead();
     }
     return residual;
+}
+
+/// Returns the residual that float's rounding of the loads leaves: no sweep brings it down [m/s].
+template <class Threads>
+double ColouredRows<Threads>::rounding_of_loads() const {
+    if (stage().cause != Cause::kLoad) return 0;
+    const std::span<const std::uint32_t> runs = step().islands.runs_in(island());
+    double largest = 0;
+    for (const double piece : results_of_pieces(threads_, {0, runs.size()}, [&](Range some) {
+             return speed_of_loads(simulation(), step(),
+                                   runs.subspan(some.begin, some.end - some.begin));
+         }))
+        largest = std::max(largest, piece);
+    return kRoundingOfLoads * largest;
 }
 
 template <class Threads>
