@@ -3,6 +3,7 @@
 
 #include <sched.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 #include "core/error.hpp"
 #include "parallel/control_groups.hpp"
@@ -60,13 +62,16 @@ int granted_cores() {
     return quota < cores ? std::max(1, static_cast<int>(quota)) : cores;
 }
 
-/// oneTBB starts no more threads than cores unless it is told that more are allowed.
+/// oneTBB starts no more threads than cores unless it is told that more are allowed. What it is
+/// told holds for the whole process, and the least number of several counts: so the number is the
+/// same for all, and only the arena says how many threads work in it.
 struct Threads::Arena {
-    explicit Arena(int count)
-        : allowed(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)),
-          arena(count) {}
+    explicit Arena(int count) : arena(count) {
+        if (count > tbb::info::default_concurrency())
+            allowed.emplace(tbb::global_control::max_allowed_parallelism, kMostThreads);
+    }
 
-    tbb::global_control allowed;
+    std::optional<tbb::global_control> allowed;
     tbb::task_arena arena;
 };
 

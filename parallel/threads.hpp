@@ -13,8 +13,8 @@ int granted_cores();
 /// More threads than this are taken for a mistake: each needs memory, and too many end the process.
 constexpr int kMostThreads = 1024;
 
-/// A number of threads for parallel work, which may be more than the cores. Where several such
-/// objects live at once, the least count limits all.
+/// A number of threads for parallel work, which may be more than the cores. Several such objects
+/// that live at once do not limit each other.
 class Threads {
   public:
     /// @param count  the calling thread included
