@@ -5,10 +5,13 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/dynamics/constraints/joint_rules.hpp"
 #include "core/error.hpp"
 #include "core/ranges.hpp"
 
@@ -17,7 +20,7 @@ namespace {
 
 /// A rotor this far from a unit rotor is a mistake, usual 1e-6; a nearer one has drifted.
 constexpr double kDrift = 1e-6;
-constexpr std::array kPlanes = {"xy", "xz", "xw", "yz", "yw", "zw"};
+constexpr auto kPlanes = std::span(kCoordinateNames).subspan(kFirstAngle);
 
 /// The values that a number may have.
 struct Span {
@@ -78,101 +81,124 @@ class ParameterCheck {
     const char* shape_;
 };
 
-void check_unit(const Rotor& rotor) {
+void check_unit(std::string_view place, const Rotor& rotor) {
     const double square = rotor.s * rotor.s + dot(rotor.b, rotor.b) + rotor.p * rotor.p;
     const double cross = 2 * rotor.s * rotor.p - wedge(rotor.b, rotor.b);
     if (std::abs(square - 1) <= kDrift && std::abs(cross) <= kDrift) return;
     throw InputError(fmt::format(
-        "rotor: is no rotation: s^2 + |B|^2 + p^2 = {} and 2 s p - B ^ B = {}; expected "
-        "1 and 0",
-        square, cross));
+        "{}: is no rotation: s^2 + |B|^2 + p^2 = {} and 2 s p - B ^ B = {}; expected 1 and 0",
+        place, square, cross));
 }
 
-void check_optional(std::string_view place, const std::optional<double>& value, const Span& span) {
-    if (value) require_in(place, *value, span);
-}
-void fail(std::string_view place, std::string_view what) {
-    throw InputError(fmt::format("{}: {}", place, what));
-}
+/// Checks a joint, and calls its parts by their names in some language.
+class JointCheck {
+  public:
+    JointCheck(JointDescription& joint, NameOfPart name) : joint_(joint), name_(name) {}
 
-void complete(std::string_view place, JointSpring& spring) {
-    const auto part = [&](const char* name) { return fmt::format("{}.{}", place, name); };
-    check_optional(part("frequency"), spring.frequency, span_of(Rule::kPositive));
-    check_optional(part("damping"), spring.damping, span_of(Rule::kNonNegative));
-    check_optional(part("stiffness"), spring.stiffness, span_of(Rule::kPositive));
-    check_optional(part("damping_force"), spring.damping_force, span_of(Rule::kNonNegative));
-    if (spring.frequency.has_value() == spring.stiffness.has_value())
-        fail(place, "expected a frequency or a stiffness, one of them");
-    if (spring.damping && !spring.frequency)
-        fail(place, "damping goes with a frequency; expected damping_force beside a stiffness");
-    if (spring.damping_force && !spring.stiffness)
-        fail(place, "damping_force goes with a stiffness; expected damping beside a frequency");
-    auto& damping = spring.frequency ? spring.damping : spring.damping_force;
-    if (!damping) damping = 0;
-}
-
-void complete(std::string_view place, JointMotor& motor, const Span& targets) {
-    const auto part = [&](const char* name) { return fmt::format("{}.{}", place, name); };
-    check_optional(part("speed"), motor.speed, {});
-    check_optional(part("target"), motor.target, targets);
-    check_optional(part("frequency"), motor.frequency, span_of(Rule::kPositive));
-    check_optional(part("damping"), motor.damping, span_of(Rule::kNonNegative));
-    check_optional(part("max"), motor.max, span_of(Rule::kPositive));
-    if (motor.speed.has_value() == motor.target.has_value())
-        fail(place, "expected a speed or a target, one of them");
-    if (motor.speed && (motor.frequency || motor.damping))
-        fail(place, "frequency and damping go with a target, and there is a speed");
-    if (motor.speed) return;
-    if (!motor.frequency) motor.frequency = kMotorFrequency;
-    if (!motor.damping) motor.damping = kMotorDamping;
-}
-
-/// Returns a bit for each coordinate that a joint of this type leaves free, of those that may have
-/// limits, springs and motors.
-unsigned free_of(const JointDescription& joint) {
-    if (joint.type == JointType::kSlider) return 1U << kSliding;
-    if (joint.type == JointType::kHinge) return 1U << kTurning;
-    return joint.type == JointType::kGeneral ? joint.free : 0;
-}
-
-void complete_coordinate(JointDescription& joint, std::size_t i) {
-    const bool is_angle = i >= kFirstAngle;
-    // An angle is told from its negative as far as half a turn.
-    const Span values = is_angle ? Span{-M_PI, M_PI} : Span{};
-    const auto place = [&](const char* of) { return fmt::format("joint: {}[{}]", of, i); };
-    const bool has_any = joint.limits[i] || joint.springs[i] || joint.motors[i];
-    if (has_any && (free_of(joint) >> i & 1) == 0)
-        fail(place("coordinate"), "is held; expected limits, springs and motors of free ones only");
-    if (joint.springs[i] && joint.type != JointType::kGeneral)
-        fail(place("springs"), "expected them in a general joint only");
-    if (const auto& limits = joint.limits[i]) {
-        for (const double limit : {(*limits)[0], (*limits)[1]})
-            require_in(place("limits"), limit, values);
-        if (!((*limits)[0] < (*limits)[1] && (*limits)[0] <= 0 && (*limits)[1] >= 0))
-            fail(place("limits"), "expected low < high, with 0 between them: as it is made");
+    void complete() {
+        const auto type = static_cast<int>(joint_.type);
+        require(type >= 0 && type < static_cast<int>(kJointTypeNames.size()), name_({"type"}), type,
+                "one of JointType");
+        check(name_({"anchor"}), joint_.anchor);
+        if (joint_.anchor_a) check(name_({"anchor_a"}), *joint_.anchor_a);
+        if (joint_.anchor_b) check(name_({"anchor_b"}), *joint_.anchor_b);
+        check_number({"length"}, joint_.length,
+                     {joint_.type == JointType::kSpring ? 0 : kSmallest, kLargest});
+        check_directions();
+        check_unit(name_({"rotation"}), joint_.rotation);
+        if (joint_.type == JointType::kGeneral &&
+            (joint_.free == 0 || joint_.free >> kJointCoordinates != 0))
+            fail({"free"}, "expected at least one of ten coordinates; with none it is a weld");
+        if (joint_.type == JointType::kSpring) complete_spring({"spring"}, joint_.spring);
+        for (std::size_t i = 0; i < kJointCoordinates; ++i) complete_coordinate(i);
+        if (joint_.breaks) check_breaks(*joint_.breaks);
     }
-    if (joint.springs[i]) complete(place("springs"), *joint.springs[i]);
-    if (joint.motors[i]) complete(place("motors"), *joint.motors[i], values);
-}
 
-void check_directions(const JointDescription& joint) {
-    const auto check_direction = [](const char* place, const Vec4& direction) {
-        check(place, direction);
-        if (direction.cwiseAbs().maxCoeff() < kSmallest)
-            fail(place, "expected a direction, not zero");
-    };
-    if (joint.type == JointType::kSlider || joint.type == JointType::kSwivel)
-        check_direction("joint: axis", joint.axis);
-    if (joint.type != JointType::kHinge) return;
-    check_direction("joint: plane.first", joint.plane.first);
-    check_direction("joint: plane.second", joint.plane.second);
-    // The sine of the angle below which the two count as parallel.
-    constexpr double kParallel = 1e-7;
-    const Vec4 first = stable_normalized(joint.plane.first);
-    const Vec4 second = stable_normalized(joint.plane.second);
-    if (!((second - second.dot(first) * first).norm() > kParallel))
-        fail("joint: plane", "the two directions are parallel; expected two that span a plane");
-}
+  private:
+    [[noreturn]] void fail(const JointPart& part, std::string_view what) const {
+        throw InputError(fmt::format("{}: {}", name_(part), what));
+    }
+    /// Returns what tells errors of the members of a part.
+    auto failing(const JointPart& part) const {
+        return [this, part](const char* key, std::string_view what) {
+            fail({part.member, part.coordinate, key}, what);
+        };
+    }
+    void check_number(const JointPart& part, const std::optional<double>& value,
+                      const Span& span) const {
+        if (value) require_in(name_(part), *value, span);
+    }
+
+    void complete_spring(const JointPart& of, JointSpring& spring) const {
+        const auto part = [&](const char* key) { return JointPart{of.member, of.coordinate, key}; };
+        check_number(part("frequency"), spring.frequency, span_of(Rule::kPositive));
+        check_number(part("damping"), spring.damping, span_of(Rule::kNonNegative));
+        check_number(part("stiffness"), spring.stiffness, span_of(Rule::kPositive));
+        check_number(part("damping_force"), spring.damping_force, span_of(Rule::kNonNegative));
+        tesserae::complete(spring, failing(of), failing(of));
+    }
+    void complete_motor(const JointPart& of, JointMotor& motor, const Span& targets) const {
+        const auto part = [&](const char* key) { return JointPart{of.member, of.coordinate, key}; };
+        check_number(part("speed"), motor.speed, {});
+        check_number(part("target"), motor.target, targets);
+        check_number(part("frequency"), motor.frequency, span_of(Rule::kPositive));
+        check_number(part("damping"), motor.damping, span_of(Rule::kNonNegative));
+        check_number(part("max"), motor.max, span_of(Rule::kPositive));
+        tesserae::complete(motor, failing(of), failing(of));
+    }
+
+    /// Returns a bit for each coordinate that the joint leaves free, of those that may have limits,
+    /// springs and motors.
+    unsigned free_of_type() const {
+        if (joint_.type == JointType::kSlider) return 1U << kSliding;
+        if (joint_.type == JointType::kHinge) return 1U << kTurning;
+        return joint_.type == JointType::kGeneral ? joint_.free : 0;
+    }
+
+    void complete_coordinate(std::size_t i) {
+        auto& limits = joint_.limits[i];
+        auto& spring = joint_.springs[i];
+        auto& motor = joint_.motors[i];
+        // An angle is told from its negative as far as half a turn.
+        const Span values = i >= kFirstAngle ? Span{-M_PI, M_PI} : Span{};
+        const char* any = limits ? "limits" : spring ? "springs" : motor ? "motors" : nullptr;
+        if (any != nullptr && (free_of_type() >> i & 1) == 0)
+            fail({any, i}, "this coordinate is held; expected one that is free");
+        if (spring && joint_.type != JointType::kGeneral)
+            fail({"springs", i}, "expected them in a general joint only");
+        if (limits) {
+            for (const double limit : {(*limits)[0], (*limits)[1]})
+                require_in(name_({"limits", i}), limit, values);
+            require_order(*limits, [&](const char*, std::string_view what) {
+                fail({"limits", i}, what);
+            });
+        }
+        if (spring) complete_spring({"springs", i}, *spring);
+        if (motor) complete_motor({"motors", i}, *motor, values);
+    }
+
+    void check_directions() const {
+        if (joint_.type == JointType::kSlider || joint_.type == JointType::kSwivel) {
+            check(name_({"axis"}), joint_.axis);
+            if (joint_.axis.cwiseAbs().maxCoeff() < kSmallest)
+                fail({"axis"}, "expected a direction, not zero");
+        }
+        if (joint_.type != JointType::kHinge) return;
+        check(name_({"plane", {}, "first"}), joint_.plane.first);
+        check(name_({"plane", {}, "second"}), joint_.plane.second);
+        require_span(joint_.plane,
+                     [&](const char*, std::string_view what) { fail({"plane"}, what); });
+    }
+
+    void check_breaks(const JointBreak& breaks) const {
+        check_number({"breaks", {}, "force"}, breaks.force, span_of(Rule::kPositive));
+        check_number({"breaks", {}, "torque"}, breaks.torque, span_of(Rule::kPositive));
+        require_load(breaks, failing({"breaks"}));
+    }
+
+    JointDescription& joint_;
+    NameOfPart name_;
+};
 
 }  // namespace
 
@@ -213,7 +239,7 @@ void check(const BodyState& state) {
     check("rotor.s", state.rotor.s);
     check("rotor", state.rotor.b);
     check("rotor.p", state.rotor.p);
-    check_unit(state.rotor);
+    check_unit("rotor", state.rotor);
     check("velocity", state.velocity);
     check("angular_velocity", state.angular_velocity);
 }
@@ -230,28 +256,15 @@ void check(const PhysicsSettings& settings) {
             "one of RotationIntegrator");
 }
 
+void complete(JointDescription& joint, NameOfPart name) { JointCheck(joint, name).complete(); }
+
 void complete(JointDescription& joint) {
-    const auto type = static_cast<int>(joint.type);
-    require(type >= 0 && type <= static_cast<int>(JointType::kGeneral), "joint: type", type,
-            "one of JointType");
-    check("joint: anchor", joint.anchor);
-    if (joint.anchor_a) check("joint: anchor_a", *joint.anchor_a);
-    if (joint.anchor_b) check("joint: anchor_b", *joint.anchor_b);
-    check_optional("joint: length", joint.length,
-                   {joint.type == JointType::kSpring ? 0 : kSmallest, kLargest});
-    check_directions(joint);
-    check_unit(joint.rotation);
-    if (joint.type == JointType::kGeneral &&
-        (joint.free == 0 || joint.free >> kJointCoordinates != 0))
-        fail("joint: free",
-             "expected a bit for at least one of ten coordinates; with none it is a weld");
-    if (joint.type == JointType::kSpring) complete("joint: spring", joint.spring);
-    for (std::size_t i = 0; i < kJointCoordinates; ++i) complete_coordinate(joint, i);
-    if (!joint.breaks) return;
-    check_optional("joint: breaks.force", joint.breaks->force, span_of(Rule::kPositive));
-    check_optional("joint: breaks.torque", joint.breaks->torque, span_of(Rule::kPositive));
-    if (!joint.breaks->force && !joint.breaks->torque)
-        fail("joint: breaks", "expected a force or a torque");
+    complete(joint, [](const JointPart& part) {
+        std::string name = fmt::format("joint: {}", part.member);
+        if (part.coordinate) name += fmt::format("[{}]", *part.coordinate);
+        if (!part.key.empty()) name += fmt::format(".{}", part.key);
+        return name;
+    });
 }
 
 }  // namespace tesserae

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/dynamics/bodies/body.hpp"
 #include "core/dynamics/constraints/joint_description.hpp"
 #include "core/dynamics/step/settings.hpp"
+#include "core/function_ref.hpp"
 
 // The rules of what a World is given. They are those of scene files: see core/ranges.hpp. Every
 // error names the place, the value and what was expected.
@@ -27,9 +31,21 @@ void check(const BodyType& type);
 void check(const BodyState& state);
 /// @throws InputError   a setting is out of its range
 void check(const PhysicsSettings& settings);
+
+/// Says which part of a JointDescription is meant: in C++ joint.motors[4].speed, for example.
+struct JointPart {
+    std::string_view member;                     ///< such as "motors"
+    std::optional<std::size_t> coordinate = {};  ///< of limits, springs and motors
+    std::string_view key = {};                   ///< of springs, motors, breaks and planes
+};
+/// Returns what an error calls a part.
+using NameOfPart = FunctionRef<std::string(const JointPart& part)>;
+
 /// Checks a joint, and sets the defaults of its springs and motors.
+/// @param name   of parts, in the language in which the joint was described; without it in C++
 /// @throws InputError   a number is out of its range; two of which only one may be there are there;
 ///                      one is missing
+void complete(JointDescription& joint, NameOfPart name);
 void complete(JointDescription& joint);
 
 }  // namespace tesserae

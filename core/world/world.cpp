@@ -209,9 +209,7 @@ JointId World::join(const JointDescription& joint, BodyId a, BodyId b) {
     const auto has_centre = [&](BodyId place) {
         return place != kWorld && is_bounded(bodies.type_of(place).shape);
     };
-    const bool is_line = joint.type == JointType::kDistance || joint.type == JointType::kRope ||
-                         joint.type == JointType::kSpring;
-    if (is_line &&
+    if (is_line(joint.type) &&
         ((!joint.anchor_a && !has_centre(place_a)) || (!joint.anchor_b && !has_centre(place_b))))
         throw InputError("joint: expected anchors where a body has no centre, or is the world");
     const auto fail = [](const char* member, std::string_view what) {

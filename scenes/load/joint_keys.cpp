@@ -13,8 +13,6 @@ namespace {
 /// The plane names, in the order of Bivector.
 constexpr std::span<const std::string_view> kHingePlanes =
     std::span(kCoordinateNames).subspan(kFirstAngle);
-/// Sine of the angle below which the two directions of a plane count as parallel.
-constexpr double kParallelSides = 1e-7;
 
 Vec4 axis_of(char letter) {
     return Vec4::Unit(static_cast<Eigen::Index>(std::string_view("xyzw").find(letter)));
@@ -36,9 +34,9 @@ JointDescription in_radians(const JointTable& table) {
 
 void JointTypeName::read(TableReader& reader, const char* key, JointTable& joint) const {
     std::string expected = "expected one of";
-    for (const std::string_view name : kJointTypes) expected += fmt::format(" \"{}\"", name);
+    for (const std::string_view name : kJointTypeNames) expected += fmt::format(" \"{}\"", name);
     std::size_t type = 0;
-    if (!reader.require(key, expected) || !reader.read(key, type, kJointTypes)) return;
+    if (!reader.require(key, expected) || !reader.read(key, type, kJointTypeNames)) return;
     joint.type = static_cast<JointType>(type);
     joint.has_type = true;
 }
@@ -55,13 +53,8 @@ void PlaneOfHinge::read(TableReader& reader, const char* key, JointPlane& plane)
     if (directions.size() != 2)
         reader.fail(key, fmt::format("has {} directions; expected two, four numbers each",
                                      directions.size()));
-    for (const Vec4& direction : directions)
-        if (direction.cwiseAbs().maxCoeff() < kSmallest)
-            reader.fail(key, "expected two directions, not zero");
-    const Vec4 first = stable_normalized(directions[0]), second = stable_normalized(directions[1]);
-    if (!((second - second.dot(first) * first).norm() > kParallelSides))
-        reader.fail(key, "the two directions are parallel; expected two that span a plane");
     plane = {directions[0], directions[1]};
+    require_span(plane, [&](const char*, std::string_view what) { reader.fail(key, what); });
 }
 
 void PlaneOfHinge::write(EffectiveWriter& out, const char* key, const JointPlane& plane) const {
@@ -91,32 +84,15 @@ void FreeCoordinates::write(EffectiveWriter& out, const char* key, std::uint16_t
 
 void LimitsOf::read(TableReader& reader, std::string_view key, Vec2& limits) const {
     if (!reader.read(key, limits, Rule::kFinite)) return;
-    if (!(limits[0] < limits[1])) reader.fail(key, "expected [low, high] with low < high");
-    if (limits[0] > 0 || limits[1] < 0)
-        reader.fail(key, "expected limits with 0 between them, where the joint is as placed");
+    require_order(limits, [&](const char*, std::string_view what) { reader.fail(key, what); });
     if (coordinate >= kFirstAngle && limits.cwiseAbs().maxCoeff() > 180)
         reader.fail(key, "expected angles from -180 to 180 degrees");
-}
-
-void complete(TableReader& reader, JointSpring& spring) {
-    if (!spring.frequency && !spring.stiffness) {
-        reader.require("frequency", "expected one in Hz, or a stiffness in N/m");
-        return;
-    }
-    if (spring.frequency && spring.stiffness)
-        reader.fail("stiffness", "there is a frequency too; expected only one of them");
-    if (spring.damping && !spring.frequency)
-        reader.fail("damping", "goes with a frequency; expected damping_force beside a stiffness");
-    if (spring.damping_force && !spring.stiffness)
-        reader.fail("damping_force", "goes with a stiffness; expected damping beside a frequency");
-    auto& damping = spring.frequency ? spring.damping : spring.damping_force;
-    if (!damping) damping = 0;
 }
 
 void SpringOf::read(TableReader& reader, std::string_view key, JointSpring& spring) const {
     reader.read_inside(key, "{ frequency = 2, damping = 0.1 }", [&](TableReader& inside) {
         spring_keys(spring, ReadKeys{inside});
-        inside.collect([&] { complete(inside, spring); });
+        inside.collect([&] { complete_in(inside, spring); });
     });
 }
 
@@ -126,30 +102,10 @@ std::string SpringOf::text(const JointSpring& spring) const {
     return inline_table(lines);
 }
 
-namespace {
-
-void complete(TableReader& reader, JointMotor& motor) {
-    if (!motor.speed && !motor.target) {
-        reader.require("speed", "expected a speed, or a target");
-        return;
-    }
-    if (motor.speed && motor.target)
-        reader.fail("target", "there is a speed too; expected only one of them");
-    if (motor.speed) {
-        for (const char* key : {"frequency", "damping"})
-            if (reader.has(key)) reader.fail(key, "goes with a target, and there is a speed");
-        return;
-    }
-    if (!motor.frequency) motor.frequency = kMotorFrequency;
-    if (!motor.damping) motor.damping = kMotorDamping;
-}
-
-}  // namespace
-
 void MotorOf::read(TableReader& reader, std::string_view key, JointMotor& motor) const {
     reader.read_inside(key, "{ speed = 1, max = 10 }", [&](TableReader& inside) {
         motor_keys(motor, ReadKeys{inside}, coordinate);
-        inside.collect([&] { complete(inside, motor); });
+        inside.collect([&] { complete_in(inside, motor); });
     });
 }
 
@@ -162,8 +118,9 @@ std::string MotorOf::text(const JointMotor& motor) const {
 void BreakOf::read(TableReader& reader, const char* key, JointBreak& breaks) const {
     reader.read_inside(key, "{ force = 100, torque = 20 }", [&](TableReader& inside) {
         break_keys(breaks, ReadKeys{inside});
-        if (!inside.has("force") && !inside.has("torque"))
-            inside.require("force", "expected one in N, or a torque in N m");
+        require_load(breaks, [&](const char* name, std::string_view expected) {
+            if (!inside.has("torque")) inside.require(name, expected);
+        });
     });
 }
 

@@ -9,18 +9,13 @@
 #include <vector>
 
 #include "core/dynamics/constraints/joint.hpp"
+#include "core/dynamics/constraints/joint_rules.hpp"
 #include "scenes/load/body_keys.hpp"
 
 // The keys of [[joint]], in lists as rules.hpp describes them. Most keys depend on the joint's
 // type.
 namespace tesserae::scenes {
 
-constexpr std::string_view kJointTypes[] = {"point",  "distance", "rope",   "spring", "weld",
-                                            "slider", "hinge",    "swivel", "general"};
-
-/// The coordinates of a FrameJoint: distances along its axes, then angles in its planes.
-constexpr std::array<std::string_view, kJointCoordinates> kCoordinateNames = {
-    "x", "y", "z", "w", "xy", "xz", "xw", "yz", "yw", "zw"};
 /// A [[joint]] table, as written: its angles are in degrees.
 struct JointTable : JointDescription {
     std::string name;
@@ -38,7 +33,7 @@ struct JointTypeName {
 
     void read(TableReader& reader, const char* key, JointTable& joint) const;
     void write(EffectiveWriter& out, const char* key, const JointTable& joint) const {
-        out.key(key, kJointTypes[static_cast<std::size_t>(joint.type)]);
+        out.key(key, kJointTypeNames[static_cast<std::size_t>(joint.type)]);
     }
 };
 
@@ -147,8 +142,13 @@ struct BreakOf {
     void write(EffectiveWriter& out, const char* key, const JointBreak& breaks) const;
 };
 
-/// Checks which keys of a spring are there, and sets the defaults of the others.
-void complete(TableReader& reader, JointSpring& spring);
+/// Checks which keys of a spring or motor are there, and sets the defaults of the others.
+template <class Part>
+void complete_in(TableReader& reader, Part& part) {
+    complete(
+        part, [&](const char* key, std::string_view what) { reader.fail(key, what); },
+        [&](const char* key, std::string_view expected) { reader.require(key, expected); });
+}
 
 /// [[joint]]: what it is and what it joins
 void joint_keys(auto& self, const auto& visit) {

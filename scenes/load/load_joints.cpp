@@ -16,7 +16,7 @@ constexpr std::size_t kMaxJointName = 256;
 /// Where the type is not known any type's keys may be there: it is the type that is wrong.
 void know_all_keys(TableReader& reader) {
     JointTable any;
-    for (std::size_t i = 0; i < std::size(kJointTypes); ++i) {
+    for (std::size_t i = 0; i < std::size(kJointTypeNames); ++i) {
         any.type = static_cast<JointType>(i);
         joint_type_keys(any, [&](const Key& key, const auto&...) { reader.has(key.name); });
     }
@@ -68,7 +68,7 @@ class JointLoader {
         else
             know_all_keys(reader);
         if (joint.has_type && joint.type == JointType::kSpring)
-            reader.collect([&] { complete(reader, joint.spring); });
+            reader.collect([&] { complete_in(reader, joint.spring); });
         joint_end_keys(joint, read);
         return joint;
     }
@@ -124,9 +124,7 @@ class JointLoader {
 
     /// What has no centre needs an anchor.
     void require_anchors(TableReader& reader, const JointTable& joint, const Ends& ends) const {
-        if (!joint.has_type || (joint.type != JointType::kDistance &&
-                                joint.type != JointType::kRope && joint.type != JointType::kSpring))
-            return;
+        if (!joint.has_type || !is_line(joint.type)) return;
         const auto has_centre = [&](BodyId id) {
             return id != kWorld && is_bounded(scene_.bodies.type_of(id).shape);
         };

@@ -205,10 +205,10 @@ ReferenceTable joint_table() {
     table.parts.push_back(part_of("", [&](const DescribeKeys& visit) {
         joint_keys(joint, visit), joint_end_keys(joint, visit);
     }));
-    for (std::size_t i = 0; i < std::size(kJointTypes); ++i) {
+    for (std::size_t i = 0; i < std::size(kJointTypeNames); ++i) {
         joint.type = static_cast<JointType>(i);
         table.parts.push_back(
-            part_of(fmt::format("type = \"{}\"", kJointTypes[i]),
+            part_of(fmt::format("type = \"{}\"", kJointTypeNames[i]),
                     [&](const DescribeKeys& visit) { joint_type_keys(joint, visit); }));
     }
     const JointSpring spring;

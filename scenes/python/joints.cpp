@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/dynamics/constraints/joint_rules.hpp"
 #include "core/error.hpp"
+#include "core/world/check.hpp"
 #include "scenes/python/record.hpp"
 #include "scenes/python/world.hpp"
 
@@ -17,10 +19,6 @@ namespace {
 
 using py::arg;
 
-constexpr std::array<std::string_view, 9> kTypes = {
-    "point", "distance", "rope", "spring", "weld", "slider", "hinge", "swivel", "general"};
-constexpr std::array<std::string_view, kJointCoordinates> kCoordinates = {
-    "x", "y", "z", "w", "xy", "xz", "xw", "yz", "yw", "zw"};
 constexpr std::array<std::string_view, 4> kAxes = {"x", "y", "z", "w"};
 
 std::string joined(const std::vector<std::string>& names) {
@@ -114,7 +112,7 @@ void read_coordinates(Keys& keys, const char* name, std::uint16_t free, OfCoordi
     if (!table) return;
     Keys inside(keys.place() + "." + name, table);
     for (std::size_t i = 0; i < kJointCoordinates; ++i) {
-        const std::string coordinate(kCoordinates[i]);
+        const std::string coordinate(kCoordinateNames[i]);
         const py::object value = inside.take(coordinate.c_str());
         if (!value) continue;
         if ((free >> i & 1) == 0)
@@ -165,7 +163,8 @@ void read_general(Keys& keys, JointDescription& joint) {
         throw InputError("general joint: free: expected a list such as [\"x\", \"yz\"]");
     for (const py::handle name : free)
         joint.free = static_cast<std::uint16_t>(
-            joint.free | 1u << place_in(kCoordinates, name.cast<std::string>(), "free coordinate"));
+            joint.free |
+            1u << place_in(kCoordinateNames, name.cast<std::string>(), "free coordinate"));
     read_coordinates(keys, "limits", joint.free, joint.limits, limits_of);
     read_coordinates(keys, "spring", joint.free, joint.springs, spring_of);
     read_coordinates(keys, "motor", joint.free, joint.motors, motor_of);
@@ -200,10 +199,30 @@ void read_type(Keys& keys, JointDescription& joint) {
     }
 }
 
+/// Returns a part of a joint as the keys of join() name it.
+std::string key_of(const JointDescription& joint, const JointPart& part) {
+    std::string name = "joint";
+    const auto append = [&](std::string_view key) { name += fmt::format(".{}", key); };
+    // The keys of a spring stand beside those of its joint.
+    const bool is_beside = joint.type == JointType::kSpring && part.member == "spring";
+    if (part.member == "springs")
+        append("spring");
+    else if (part.member == "motors")
+        append("motor");
+    else if (part.member == "rotation")
+        append("rotor");
+    else if (!is_beside)
+        append(part.member);
+    if (part.coordinate && joint.type == JointType::kGeneral)
+        append(kCoordinateNames[*part.coordinate]);
+    if (!part.key.empty()) append(part.key);
+    return name;
+}
+
 JointId join(SharedWorld& self, const std::string& type, const py::object& a, const py::object& b,
              const py::kwargs& given) {
     JointDescription joint;
-    joint.type = static_cast<JointType>(place_in(kTypes, type, "type"));
+    joint.type = static_cast<JointType>(place_in(kJointTypeNames, type, "type"));
     Keys keys(type + " joint", given);
     read_type(keys, joint);
     if (const auto breaks = keys.take("breaks")) {
@@ -216,6 +235,8 @@ JointId join(SharedWorld& self, const std::string& type, const py::object& a, co
     if (const auto collide = keys.take("collide")) joint.collide = collide.cast<bool>();
     keys.finish();
     if (a.is_none()) throw InputError("joint: a = None: expected a body; the world may be b");
+    // The world checks it, too, and would name its parts in C++.
+    complete(joint, [&](const JointPart& part) { return key_of(joint, part); });
     return self.get().join(joint, body_of(a, "a"), body_of(b, "b"));
 }
 

@@ -17,10 +17,6 @@ namespace {
 /// decimals. The solver then takes the difference away.
 constexpr double kSameLength = 1e-6;
 
-bool is_line(JointType type) {
-    return type == JointType::kDistance || type == JointType::kRope || type == JointType::kSpring;
-}
-
 /// What is left of a direction orthogonal to the first columns of a matrix.
 Vec4 orthogonal_part(const Mat4& axes, int columns, const Vec4& direction) {
     Vec4 rest = direction;

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string_view>
-
 #include "core/dynamics/constraints/joint.hpp"
-#include "core/dynamics/constraints/joint_description.hpp"
-#include "core/function_ref.hpp"
+#include "core/dynamics/constraints/joint_rules.hpp"
 
 namespace tesserae {
 
-/// Is called with the member of a JointDescription that is wrong, and with what is. It throws.
-using FailJoint = FunctionRef<void(const char* member, std::string_view what)>;
-
 /// Sets the anchors and the length of a distance, rope or spring where the description has none,
 /// and checks them against how the bodies are placed. It does nothing for other types.
+/// @param fail   throws
 /// @param b   kWorld: the joint is with the world; anchor_b is then there
 void set_length(JointDescription& joint, const Bodies& bodies, BodyId a, BodyId b, FailJoint fail);
 

@@ -123,13 +123,17 @@ TEST(WorldJoints, WhatCannotBeIsRefused) {
     joint.length = 2;
     expect(joint, 0, 1, "3 m apart");
     joint = {.type = JointType::kSpring};
-    expect(joint, 0, 1, "a frequency or a stiffness");
+    expect(joint, 0, 1, "joint: spring.frequency: expected one in Hz, or a stiffness");
     joint.spring = {.frequency = 2.0, .stiffness = 3.0};
-    expect(joint, 0, 1, "one of them");
+    expect(joint, 0, 1, "joint: spring.stiffness: there is a frequency too");
     joint.spring = {.frequency = -2.0};
     expect(joint, 0, 1, "frequency = -2");
     joint.spring = {.damping_force = 2.0};
-    expect(joint, 0, 1, "a frequency or a stiffness");
+    expect(joint, 0, 1, "a stiffness");
+    joint.spring = {.damping = 0.5, .stiffness = 3.0};
+    expect(joint, 0, 1, "spring.damping: goes with a frequency");
+    joint.spring = {.frequency = 2.0, .damping_force = 2.0};
+    expect(joint, 0, 1, "spring.damping_force: goes with a stiffness");
     joint = {.type = JointType::kHinge};
     joint.plane.second = joint.plane.first * 2;
     expect(joint, 0, 1, "parallel");
@@ -137,25 +141,31 @@ TEST(WorldJoints, WhatCannotBeIsRefused) {
     expect(joint, 0, 1, "not zero");
     joint = {.type = JointType::kHinge};
     joint.limits[kTurning] = Vec2(0.5, 1);
-    expect(joint, 0, 1, "with 0 between them");
+    expect(joint, 0, 1, "joint: limits[4]: expected limits with 0 between them");
+    joint.limits[kTurning] = Vec2(1, -1);
+    expect(joint, 0, 1, "low < high");
     joint.limits[kTurning] = Vec2(-4, 1);
     expect(joint, 0, 1, "limits[4] = -4");
     joint.limits = {};
     joint.motors[kSliding] = JointMotor{.speed = 1.0};
-    expect(joint, 0, 1, "is held");
+    expect(joint, 0, 1, "motors[0]: this coordinate is held");
     joint.motors = {};
     joint.motors[kTurning] = JointMotor{.speed = 1.0, .target = 1.0};
-    expect(joint, 0, 1, "a speed or a target");
+    expect(joint, 0, 1, "motors[4].target: there is a speed too");
+    joint.motors[kTurning] = JointMotor{.speed = 1.0, .damping = 1.0};
+    expect(joint, 0, 1, "motors[4].damping: goes with a target");
+    joint.motors[kTurning] = JointMotor{};
+    expect(joint, 0, 1, "motors[4].speed: expected a speed, or a target");
     joint.motors[kTurning] = JointMotor{.speed = 1.0, .max = 0.0};
     expect(joint, 0, 1, "max = 0");
     joint = {.type = JointType::kGeneral};
     expect(joint, 0, 1, "free");
     joint.free = 1;
     joint.rotation = {2, {}, 0};
-    expect(joint, 0, 1, "no rotation");
+    expect(joint, 0, 1, "joint: rotation: is no rotation");
     joint = {.type = JointType::kWeld};
     joint.breaks = JointBreak{};
-    expect(joint, 0, 1, "a force or a torque");
+    expect(joint, 0, 1, "breaks.force: expected one in N, or a torque");
 }
 
 }  // namespace

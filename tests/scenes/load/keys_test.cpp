@@ -348,9 +348,9 @@ TEST(Keys, OfBodiesAndLatticesAreReadAndWritten) {
 
 TEST(Keys, OfJointsAreReadAndWritten) {
     JointTable joint;
-    for (std::size_t i = 0; i < std::size(kJointTypes); ++i) {
+    for (std::size_t i = 0; i < std::size(kJointTypeNames); ++i) {
         joint.type = static_cast<JointType>(i);
-        const std::string path = "joint." + std::string(kJointTypes[i]);
+        const std::string path = "joint." + std::string(kJointTypeNames[i]);
         std::map<std::string, std::string> also = {{"damping_force", path + ".stiffness=1"},
                                                    {"length", path + ".anchor_b=[0.25, 0, 0, 0]"}};
         const Table table = {"[[joint]]", static_cast<int>(i), set_in(path), std::move(also),
