@@ -200,6 +200,19 @@ class JointCheck {
     NameOfPart name_;
 };
 
+/// What is unbounded stands still: what moves a body is no part of it.
+void check_unbounded(const BodyType& type) {
+    const BodyType plain;
+    const auto require_plain = [&](const char* member, double value, double default_value) {
+        if (value == default_value) return;
+        throw InputError(fmt::format("{} = {}: a {} never moves and has none; expected no {}",
+                                     member, value, name_of(type.shape), member));
+    };
+    require_plain("mass", type.mass, plain.mass);
+    require_plain("gravity_scale", type.gravity_scale, plain.gravity_scale);
+    require_plain("damping", type.damping, plain.damping);
+}
+
 }  // namespace
 
 void check(std::string_view place, double value) { require_in(place, value, {}); }
@@ -225,7 +238,10 @@ void make_complete(Shape& shape) {
 
 void check(const BodyType& type) {
     check(type.shape);
-    if (is_bounded(type.shape)) require_in("mass", type.mass, {kLeastMass, kLargestMass});
+    if (is_bounded(type.shape))
+        require_in("mass", type.mass, {kLeastMass, kLargestMass});
+    else
+        check_unbounded(type);
     require_in("friction", type.friction, span_of(Rule::kNonNegative));
     require_in("rolling_friction", type.rolling_friction, span_of(Rule::kNonNegative));
     require_in("restitution", type.restitution, {0, 1});

@@ -44,6 +44,16 @@ void check_place(const BodyType& type, const BodyState& state) {
                         name_of(type.shape)));
 }
 
+/// Checks the state of one of several bodies. Errors begin with what name() returns.
+template <class Name>
+void check_row(const BodyType& type, const BodyState& state, const Name& name) {
+    try {
+        check_place(type, state);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name(), error.what()));
+    }
+}
+
 /// Returns the wrench about a body's centre of a force, or an impulse, at a point.
 Wrench about_centre(const Bodies& bodies, BodyId place, const Vec4& force, const Vec4& point) {
     return {force, wedge(point - bodies.position[place], force)};
@@ -90,6 +100,16 @@ BodyId World::add(const BodyType& type, const BodyState& state) {
     check(type);
     check_place(type, state);
     return inside_->add(type, state);
+}
+
+std::vector<BodyId> World::add_many(const BodyType& type, std::span<const BodyState> states) {
+    check(type);
+    for (std::size_t i = 0; i < states.size(); ++i)
+        check_row(type, states[i], [i] { return fmt::format("row {}", i); });
+    std::vector<BodyId> added;
+    added.reserve(states.size());
+    for (const BodyState& state : states) added.push_back(inside_->add(type, state));
+    return added;
 }
 
 void World::remove(BodyId body) { inside_->remove(inside_->place_of(body)); }
@@ -146,11 +166,8 @@ void World::set_arrays(std::span<const Vec4> position, std::span<const Rotor> ro
                      rotor.empty() ? bodies.rotor[i] : rotor[i],
                      velocity.empty() ? bodies.velocity[i] : velocity[i],
                      angular_velocity.empty() ? bodies.angular_velocity[i] : angular_velocity[i]};
-        try {
-            check_place(bodies.type_of(static_cast<BodyId>(i)), states[i]);
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("row {}, body {}: {}", i, ids()[i], error.what()));
-        }
+        check_row(bodies.type_of(static_cast<BodyId>(i)), states[i],
+                  [&] { return fmt::format("row {}, body {}", i, ids()[i]); });
     }
     inside_->wake_all();
     for (std::size_t i = 0; i < count; ++i) inside_->set_state(static_cast<BodyId>(i), states[i]);

@@ -56,6 +56,8 @@ class World {
 
     /// Adds a body and returns its number. A body of an unbounded shape stands still at the origin.
     BodyId add(const BodyType& type, const BodyState& state = {});
+    /// Adds bodies of one type, and returns their numbers, which follow each other.
+    std::vector<BodyId> add_many(const BodyType& type, std::span<const BodyState> states);
     /// Removes a body and its joints. What touched it or slept with it is awake afterwards.
     void remove(BodyId body);
     bool has(BodyId body) const;

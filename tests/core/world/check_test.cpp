@@ -59,11 +59,42 @@ TEST(Check, EveryNumberOfATypeHasItsRange) {
         body.group = 64;
         world.add(body);
     });
-    // A mass of something infinite is not looked at.
+}
+
+TEST(Check, WhatIsUnboundedHasNothingThatMovesIt) {
+    const auto plane = [](const std::string& place, auto member, double value) {
+        expect_refused(place, [&](World& world) {
+            BodyType body = plane_type(Vec4::UnitY(), 0);
+            body.*member = value;
+            world.add(body);
+        });
+    };
+    plane("mass = 3: a hyperplane never moves", &BodyType::mass, 3);
+    plane("mass = nan", &BodyType::mass, kNaN);
+    plane("gravity_scale = 0", &BodyType::gravity_scale, 0);
+    plane("damping = 0.5", &BodyType::damping, 0.5);
+    // What touches it is told these, and it is fixed indeed.
     World world;
-    BodyType plane = plane_type(Vec4::UnitY(), 0);
-    plane.mass = kNaN;
-    EXPECT_EQ(error_of([&] { world.add(plane); }), "");
+    BodyType body = plane_type(Vec4::UnitY(), 0);
+    body.friction = 0.1, body.restitution = 0.2, body.rolling_friction = 0.3, body.group = 4;
+    body.fixed_position = body.fixed_rotation = true;
+    EXPECT_EQ(error_of([&] { world.add(body); }), "");
+}
+
+TEST(Check, ManyBodiesAreAddedOrNone) {
+    expect_refused("row 1: position.w = nan", [](World& world) {
+        const BodyState states[] = {{}, {{0, 0, 0, kNaN}, {}, Vec4::Zero(), {}}, {}};
+        world.add_many(sphere_type(1), states);
+    });
+    expect_refused("row 0: state: a hyperplane stands still", [](World& world) {
+        const BodyState states[] = {{{1, 0, 0, 0}, {}, Vec4::Zero(), {}}};
+        world.add_many(plane_type(Vec4::UnitY(), 0), states);
+    });
+    expect_refused("restitution = 2", [](World& world) {
+        BodyType body = sphere_type(1);
+        body.restitution = 2;
+        world.add_many(body, {});
+    });
 }
 
 TEST(Check, EveryParameterOfAShapeHasItsRule) {
