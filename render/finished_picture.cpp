@@ -57,6 +57,12 @@ std::optional<render::Preview> preview_of(const Picture::Inside& picture) {
     return preview;
 }
 
+/// A file of one kind must not be named as another.
+void require_ending(const fs::path& file, const char* ending) {
+    if (file.extension() != ending)
+        throw InputError(fmt::format("{}: expected a name that ends in {}", file.string(), ending));
+}
+
 }  // namespace
 
 Picture::Inside::Inside(const render::Crop& of, std::span<const render::ChannelPlace> places)
@@ -142,9 +148,13 @@ std::span<const float> Picture::layer(std::string_view name) const {
 
 const std::vector<std::string>& Picture::warnings() const { return inside_->warnings; }
 
-void Picture::write_image(const fs::path& exr) const { write_file(exr, inside_->image); }
+void Picture::write_image(const fs::path& exr) const {
+    require_ending(exr, ".exr");
+    write_file(exr, inside_->image);
+}
 
 void Picture::write_preview(const fs::path& png) const {
+    require_ending(png, ".png");
     if (!inside_->preview) inside_->layer("color");
     if (!inside_->preview)
         throw InputError("layer \"color\": has not all of R, G, B and A: no preview without them");

@@ -62,11 +62,12 @@ class Picture {
     const std::vector<std::string>& warnings() const;
 
     /// Writes an OpenEXR file, with the bytes that rendering into a file gives.
-    /// @throws RunError   it cannot be written
+    /// @throws RunError     it cannot be written
+    /// @throws InputError   the name does not end in .exr
     void write_image(const std::filesystem::path& exr) const;
     /// Writes an sRGB picture for the eye: the preview that rendering into a folder gives.
     /// @throws RunError     it cannot be written
-    /// @throws InputError   the picture has no layer "color"
+    /// @throws InputError   the picture has no layer "color"; the name does not end in .png
     void write_preview(const std::filesystem::path& png) const;
 
     /// What is in it; only the renderer makes one.

@@ -156,6 +156,8 @@ SimulationResult Scene::simulate(const fs::path& file, const SimulationOptions& 
 }
 
 Picture Scene::render(const World& world, const PictureOptions& options) const {
+    if (options.frame < 0)
+        throw InputError(fmt::format("frame = {}: expected a number >= 0", options.frame));
     std::optional<Picture> picture;
     run_on(options.threads, [&] {
         picture = scenes::world_in_memory(*inside_, world, options.frame, watch_of(options));

@@ -47,7 +47,7 @@ struct SimulationResult {
 /// How Scene::render() and Scene::render_frame() work.
 struct PictureOptions {
     int threads = 0;  ///< as above
-    /// The number of the picture of a world: noise differs from number to number.
+    /// The number of the picture of a world, >= 0: noise differs from number to number.
     int frame = 0;
     ProgressFunction progress = {};           ///< of tiles
     const std::atomic<bool>* stop = nullptr;  ///< as above

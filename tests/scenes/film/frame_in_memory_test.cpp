@@ -133,6 +133,17 @@ TEST(FramesInMemory, HoldTheValuesOfTheirFiles) {
               std::string::npos);
     const Picture no_color = drift({"render.channels=[\"id\"]"}).render(drift().world());
     EXPECT_THROW(no_color.write_preview(folder / "none.png"), InputError);
+    for (const char* name : {"made.jpg", "made.exr", "made"})
+        EXPECT_NE(error_of<InputError>([&] {
+                      made.write_preview(folder / name);
+                  }).find("expected a name that ends in .png"),
+                  std::string::npos)
+            << name;
+    EXPECT_NE(error_of<InputError>([&] {
+                  made.write_image(folder / "one.png");
+              }).find("expected a name that ends in .exr"),
+              std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(folder / "made.jpg"));
     EXPECT_THROW(Picture::read(folder / "made.png"), InputError);
 }
 
@@ -255,6 +266,12 @@ TEST(PicturesOfWorlds, FollowABodyWhileItIsThere) {
     world.remove(scene.body("left"));
     EXPECT_EQ(error_of<InputError>([&] { scene.render(world); }),
               "body 1 \"left\": the camera follows it, and the world has it no more");
+}
+
+TEST(PicturesOfWorlds, HaveNumbersFromZero) {
+    const Scene scene = drift();
+    EXPECT_EQ(error_of<InputError>([&] { scene.render(scene.world(), {.frame = -1}); }),
+              "frame = -1: expected a number >= 0");
 }
 
 TEST(PicturesOfWorlds, AreNotTakenForFramesOfTheScene) {
