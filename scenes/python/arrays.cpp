@@ -110,11 +110,10 @@ std::vector<Rotor> Rows::rotors() const {
     return all;
 }
 
-RowResult::RowResult(std::initializer_list<const Rows*> rows, std::vector<py::ssize_t> shape) {
-    for (const py::ssize_t size : shape) width_ *= static_cast<std::size_t>(size);
+const Rows* several_of(std::initializer_list<const Rows*> rows) {
     const Rows* several = nullptr;
     for (const Rows* one : rows) {
-        if (one->is_single()) continue;
+        if (one == nullptr || one->is_single()) continue;
         if (several != nullptr && several->count() != one->count())
             throw InputError(
                 fmt::format("the arguments have {} and {} rows: expected as many, or "
@@ -122,7 +121,12 @@ RowResult::RowResult(std::initializer_list<const Rows*> rows, std::vector<py::ss
                             several->count(), one->count()));
         several = one;
     }
-    if (several != nullptr) {
+    return several;
+}
+
+RowResult::RowResult(std::initializer_list<const Rows*> rows, std::vector<py::ssize_t> shape) {
+    for (const py::ssize_t size : shape) width_ *= static_cast<std::size_t>(size);
+    if (const Rows* several = several_of(rows); several != nullptr) {
         count_ = several->count();
         shape.insert(shape.begin(), static_cast<py::ssize_t>(count_));
     }

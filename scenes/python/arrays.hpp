@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,6 +64,11 @@ class Rows {
     std::size_t width_, count_;
     bool single_;
 };
+
+/// Returns those of some rows that are several and with which the others go; null where all are
+/// single, or null.
+/// @throws InputError   two have different numbers of rows
+const Rows* several_of(std::initializer_list<const Rows*> rows);
 
 /// Makes an array of rows by calling write(i, row) for each, where the arguments were `rows`.
 /// @param shape   of a row, for example {4, 4}

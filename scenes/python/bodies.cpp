@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <limits>
+#include <optional>
+#include <vector>
+
 #include "core/error.hpp"
 #include "scenes/python/record.hpp"
 #include "scenes/python/shape.hpp"
@@ -44,37 +48,101 @@ void change(BodyState& state, const py::object& position, const py::object& roto
         state.angular_velocity = bivector_of(angular_velocity, "angular_velocity");
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The mass that Python is told: what stands still cannot be moved.
+double mass_of(const BodyType& type) { return is_bounded(type.shape) ? type.mass : kInfinity; }
+
+BodyType made_type(const AnyShape& shape, double mass, double friction, double rolling_friction,
+                   double restitution, bool fixed_position, bool fixed_rotation,
+                   double gravity_scale, double damping, int group,
+                   const py::object& collides_with) {
+    if (group < 0 || group >= kMostGroups)
+        throw InputError(
+            fmt::format("group = {}: expected a number from 0 to {}", group, kMostGroups - 1));
+    BodyType type{.shape = shape.shape,
+                  .mass = mass,
+                  .friction = friction,
+                  .rolling_friction = rolling_friction,
+                  .restitution = restitution,
+                  .fixed_position = fixed_position,
+                  .fixed_rotation = fixed_rotation,
+                  .gravity_scale = gravity_scale,
+                  .damping = damping,
+                  .group = static_cast<std::uint8_t>(group),
+                  .collides_with = groups_of(collides_with)};
+    if (mass == kInfinity && !is_bounded(type.shape)) type.mass = BodyType().mass;
+    return type;
+}
+
 BodyId add(SharedWorld& self, const AnyShape& shape, double mass, double friction,
            double rolling_friction, double restitution, bool fixed_position, bool fixed_rotation,
            double gravity_scale, double damping, int group, const py::object& collides_with,
            const py::object& position, const py::object& rotor, const py::object& velocity,
            const py::object& angular_velocity) {
-    if (group < 0 || group >= kMostGroups)
-        throw InputError(
-            fmt::format("group = {}: expected a number from 0 to {}", group, kMostGroups - 1));
-    const BodyType type{.shape = shape.shape,
-                        .mass = mass,
-                        .friction = friction,
-                        .rolling_friction = rolling_friction,
-                        .restitution = restitution,
-                        .fixed_position = fixed_position,
-                        .fixed_rotation = fixed_rotation,
-                        .gravity_scale = gravity_scale,
-                        .damping = damping,
-                        .group = static_cast<std::uint8_t>(group),
-                        .collides_with = groups_of(collides_with)};
     BodyState state;
     change(state, position, rotor, velocity, angular_velocity);
-    return self.get().add(type, state);
+    return self.get().add(
+        made_type(shape, mass, friction, rolling_friction, restitution, fixed_position,
+                  fixed_rotation, gravity_scale, damping, group, collides_with),
+        state);
+}
+
+/// Returns the rows of a part of states, if it is given.
+std::optional<Rows> rows_of(const py::object& value, const char* name, std::size_t width) {
+    if (value.is_none()) return {};
+    return Rows(value, name, width);
+}
+
+/// Returns a state for each row of arrays, of which one has several rows.
+std::vector<BodyState> states_of_rows(const py::object& position, const py::object& rotor,
+                                      const py::object& velocity,
+                                      const py::object& angular_velocity) {
+    const auto positions = rows_of(position, "position", 4), rotors = rows_of(rotor, "rotor", 8),
+               velocities = rows_of(velocity, "velocity", 4),
+               turns = rows_of(angular_velocity, "angular_velocity", 6);
+    const auto given = [](const std::optional<Rows>& rows) { return rows ? &*rows : nullptr; };
+    const Rows* several =
+        several_of({given(positions), given(rotors), given(velocities), given(turns)});
+    if (several == nullptr)
+        throw InputError("expected rows, such as a position of shape (n, 4): a body for each");
+    std::vector<BodyState> states(several->count());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        if (positions) states[i].position = positions->vec4(i);
+        if (rotors) states[i].rotor = rotors->rotor(i);
+        if (velocities) states[i].velocity = velocities->vec4(i);
+        if (turns) states[i].angular_velocity = turns->bivector(i);
+    }
+    return states;
+}
+
+py::array add_many(SharedWorld& self, const AnyShape& shape, double mass, double friction,
+                   double rolling_friction, double restitution, bool fixed_position,
+                   bool fixed_rotation, double gravity_scale, double damping, int group,
+                   const py::object& collides_with, const py::object& position,
+                   const py::object& rotor, const py::object& velocity,
+                   const py::object& angular_velocity) {
+    const auto ids = self.get().add_many(
+        made_type(shape, mass, friction, rolling_friction, restitution, fixed_position,
+                  fixed_rotation, gravity_scale, damping, group, collides_with),
+        states_of_rows(position, rotor, velocity, angular_velocity));
+    return py::array_t<BodyId>(static_cast<py::ssize_t>(ids.size()), ids.data());
 }
 
 py::object type_of(const SharedWorld& self, const py::object& body) {
     const BodyType& type = self.get().type(body_of(body, "body"));
-    const double mass =
-        is_bounded(type.shape) ? type.mass : std::numeric_limits<double>::infinity();
-    return record("BodyType", object_of(type.shape), mass, type.friction, type.rolling_friction,
-                  type.restitution, type.fixed_position, type.fixed_rotation, type.gravity_scale,
-                  type.damping, int{type.group}, groups_to(type.collides_with));
+    return record("BodyType", object_of(type.shape), mass_of(type), type.friction,
+                  type.rolling_friction, type.restitution, type.fixed_position, type.fixed_rotation,
+                  type.gravity_scale, type.damping, int{type.group}, groups_to(type.collides_with));
+}
+
+py::array masses_of(const SharedWorld& self) {
+    const World& of = self.get();
+    const auto ids = of.ids();
+    py::array_t<double> masses(static_cast<py::ssize_t>(ids.size()));
+    double* mass = masses.mutable_data();
+    for (const BodyId id : ids) *mass++ = mass_of(of.type(id));
+    return masses;
 }
 
 py::object state_of(const SharedWorld& self, const py::object& body) {
@@ -230,13 +298,33 @@ void add_bodies(WorldClass& world) {
 Adds a body and returns its number. The properties are those of a scene's [[body]]: mass [kg],
 rolling_friction [m], damping [1/s]; a group from 0 to 63, and the groups that it collides with,
 None: all. It is at position (4,) [m], turned by rotor (8,), and moves at velocity (4,) [m/s] and
-angular_velocity (6,) [rad/s]. A hyperplane stands still and has none of these.
+angular_velocity (6,) [rad/s]. A hyperplane stands still: it has a friction, restitution and group, and none of the others.
 
 >>> world = ts.World()
 >>> world.add(ts.Hyperplane([0, 1, 0, 0]))
 0
 >>> world.add(ts.Hyperbox([1, 1, 1, 1]), position=[0, 0.5, 0, 0])
 1
+)");
+    world.def(
+        "add_many", &add_many, arg("shape"), py::kw_only(), arg("mass") = 1.0,
+        arg("friction") = 0.5, arg("rolling_friction") = 0.0, arg("restitution") = 0.0,
+        arg("fixed_position") = false, arg("fixed_rotation") = false, arg("gravity_scale") = 1.0,
+        arg("damping") = 0.0, arg("group") = 0, arg("collides_with") = py::none(),
+        arg("position") = py::none(), arg("rotor") = py::none(), arg("velocity") = py::none(),
+        arg("angular_velocity") = py::none(),
+        R"(add_many(self, shape, *, mass=1.0, friction=0.5, rolling_friction=0.0, restitution=0.0, fixed_position=False, fixed_rotation=False, gravity_scale=1.0, damping=0.0, group=0, collides_with=None, position=None, rotor=None, velocity=None, angular_velocity=None)
+--
+
+Adds bodies that differ in where they are and how they move, and returns their numbers (n,). They
+have the properties of add(). There is a body for each row of position (n, 4), rotor (n, 8),
+velocity (n, 4) or angular_velocity (n, 6); a single row is that of all.
+
+>>> world = ts.World()
+>>> world.add_many(ts.Hypersphere(0.1), mass=2, position=[[0, 1, 0, 0], [0, 2, 0, 0]], velocity=[0, 0, 0, 1])
+array([0, 1], dtype=uint32)
+>>> world.velocity[1], world.masses
+(array([0., 0., 0., 1.]), array([2., 2.]))
 )");
     world.def(
         "remove",
@@ -257,6 +345,9 @@ Removes a body and its joints.
               [](const SharedWorld& self) { return py::iter(ids_of(self).attr("tolist")()); });
     world.def_property_readonly(
         "ids", &ids_of, "The numbers of the bodies (n,), ascending. All arrays have this order.");
+    world.def_property_readonly(
+        "masses", &masses_of,
+        "The masses (n,) [kg], in the order of ids; infinite for a hyperplane. A copy.");
     world.def("type", &type_of, arg("body"), R"(type(self, body)
 --
 

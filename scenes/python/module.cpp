@@ -45,4 +45,7 @@ PYBIND11_MODULE(_tesserae, module) {
     add_pictures(module);
     add_scenes(module);
     add_trajectories(module);
+    guard_calls(module);
+    pybind11::module_ rotor = module.attr("_rotor");
+    guard_calls(rotor, "rotor.");
 }

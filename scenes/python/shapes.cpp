@@ -5,10 +5,13 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/world/check.hpp"
 #include "scenes/python/arrays.hpp"
+#include "scenes/python/attributes.hpp"
 #include "scenes/python/shape.hpp"
 #include "scenes/python/topics.hpp"
 
@@ -72,13 +75,57 @@ std::string text_of(const py::object& self) {
     return fmt::format("{}({})", py::type::of(self).attr("__name__").cast<std::string>(), text);
 }
 
-/// Makes a hyperplane again of its unit normal, which scaling to unit length would round.
-OneShape<Hyperplane> unit_plane(const py::object& normal, double offset) {
-    const Hyperplane plane{vec4_of(normal, "normal"), offset};
+/// What has moved through a pickle is of length 1 but for decimals.
+void require_unit(const Hyperplane& plane) {
     check(plane);
     if (std::abs(plane.normal.norm() - 1) > 1e-12)
         throw InputError("hyperplane: normal: expected a direction of length 1");
-    return {{plane}};
+}
+
+RegularPolychoron regular_of(const std::string& name) {
+    for (std::size_t i = 0; i < std::size(kRegularNames); ++i)
+        if (name == kRegularNames[i]) return static_cast<RegularPolychoron>(i + 1);
+    throw InputError(
+        fmt::format("polychoron: regular = \"{}\": expected one of 5-cell, 8-cell, "
+                    "16-cell, 24-cell, 120-cell, 600-cell",
+                    name));
+}
+
+// ---- pickles ---------------------------------------------------------------------------------
+
+/// Reads parameters as value_of() writes them.
+void read(const py::handle& value, double& number) { number = real_of(value, "parameter"); }
+void read(const py::handle& value, Vec4& vector) { vector = vec4_of(value, "parameter"); }
+void read(const py::handle& value, Vec2& vector) { vector = vec2_of(value, "parameter"); }
+void read(const py::handle& value, std::array<std::int64_t, 2>& numbers) {
+    numbers = value.cast<std::array<std::int64_t, 2>>();
+}
+void read(const py::handle& value, std::vector<Vec4>& points) {
+    points = Rows(value, "parameter", 4).vec4s();
+}
+void read(const py::handle& value, RegularPolychoron& which) {
+    which = regular_of(value.cast<std::string>());
+}
+
+/// The state of a pickle: parameters and attributes.
+py::tuple pickle_state(const py::object& self) {
+    return py::make_tuple(parameters_of(self.cast<const AnyShape&>()), attributes_of(self));
+}
+template <class S>
+std::pair<OneShape<S>, py::dict> of_state(const py::tuple& state) {
+    const py::dict parameters = state[0];
+    S shape;
+    if constexpr (std::is_same_v<S, Polychoron>)
+        if (parameters.contains("vertices")) shape.regular = RegularPolychoron::kNone;
+    S::parameters(shape,
+                  [&](const Key& key, auto& value, Rule) { read(parameters[key.name], value); });
+    OneShape<S> made{{shape}};
+    // Its normal is unit already, and would be rounded once more.
+    if constexpr (std::is_same_v<S, Hyperplane>)
+        require_unit(shape);
+    else
+        make_complete(made.shape);
+    return {made, py::dict(state[1])};
 }
 
 // ---- functions of points ---------------------------------------------------------------------
@@ -148,7 +195,8 @@ py::array principal_axes_in(const AnyShape& self) {
 
 template <class S>
 auto add_class(py::module_& module, const char* name, const char* doc) {
-    return py::class_<OneShape<S>, AnyShape>(module, name, doc);
+    return py::class_<OneShape<S>, AnyShape>(module, name, doc)
+        .def(py::pickle(&pickle_state, &of_state<S>));
 }
 
 void add_base(py::module_& module) {
@@ -221,11 +269,8 @@ array([ 5., 10., 17., 13., 20., 25.])
                      py::make_tuple(name_of(self.shape), py::tuple(all.attr("values")())));
              })
         .def("__repr__", &text_of)
-        .def("__reduce__", [](const py::object& self) {
-            return py::make_tuple(
-                py::module_::import("tesserae.records").attr("made_shape"),
-                py::make_tuple(py::type::of(self), parameters_of(self.cast<const AnyShape&>())));
-        });
+        .def("__getstate__", &pickle_state)
+        .def("__reduce__", &reduced);
 }
 
 void add_boxes_and_balls(py::module_& module) {
@@ -246,7 +291,6 @@ void add_boxes_and_balls(py::module_& module) {
         .def(py::init([](const py::object& size) { return made(Hyperbox{vec4_of(size, "size")}); }),
              arg("size"), "__init__(self, size)\n--\n\n")
         .def_property_readonly("size", parameter("size"), "The four full sides [m].");
-    module.def("_unit_plane", &unit_plane, arg("normal"), arg("offset"));
     add_class<Hyperplane>(module, "Hyperplane",
                           "Solid where normal . p < offset [m], "
                           "with the normal made unit. It never moves.")
@@ -257,15 +301,6 @@ void add_boxes_and_balls(py::module_& module) {
         .def_property_readonly("normal", parameter("normal"), "Of length 1.")
         .def_property_readonly("offset", parameter("offset"),
                                "Where the plane is along its normal [m].");
-}
-
-RegularPolychoron regular_of(const std::string& name) {
-    for (std::size_t i = 0; i < std::size(kRegularNames); ++i)
-        if (name == kRegularNames[i]) return static_cast<RegularPolychoron>(i + 1);
-    throw InputError(
-        fmt::format("polychoron: regular = \"{}\": expected one of 5-cell, 8-cell, "
-                    "16-cell, 24-cell, 120-cell, 600-cell",
-                    name));
 }
 
 void add_hulls(py::module_& module) {

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "parallel/world_threads.hpp"
+#include "scenes/python/attributes.hpp"
 #include "scenes/python/record.hpp"
 #include "scenes/python/topics.hpp"
 #include "scenes/python/world.hpp"
@@ -60,16 +61,72 @@ py::object step(SharedWorld& self, std::optional<double> dt, std::int64_t steps)
                   report.residual, report.asleep);
 }
 
-SharedWorld copied(const SharedWorld& self) { return {self.get(), self.threads()}; }
+/// The bytes of an object of Python that has some, such as bytes, bytearray or memoryview.
+class Bytes {
+  public:
+    /// @throws py::type_error   it has none, or not one after the other
+    explicit Bytes(const py::object& data) {
+        if (PyObject_GetBuffer(data.ptr(), &buffer_, PyBUF_SIMPLE) == 0) return;
+        PyErr_Clear();
+        throw py::type_error(fmt::format("data: expected the bytes of save(), got {}",
+                                         py::str(py::type::of(data)).cast<std::string>()));
+    }
+    ~Bytes() { PyBuffer_Release(&buffer_); }
+    Bytes(const Bytes&) = delete;
+    Bytes& operator=(const Bytes&) = delete;
 
-SharedWorld loaded(const py::bytes& bytes, int threads) {
-    return {World::load(bytes.cast<std::string_view>(), workers_of(threads)), threads};
+    std::string_view view() const {
+        return {static_cast<const char*>(buffer_.buf), static_cast<std::size_t>(buffer_.len)};
+    }
+
+  private:
+    Py_buffer buffer_ = {};
+};
+
+SharedWorld loaded(const py::object& data, int threads) {
+    const Bytes bytes(data);
+    return {World::load(bytes.view(), workers_of(threads)), threads};
+}
+
+// The state of a pickle: the bytes, or in copies the world itself; threads; attributes.
+
+py::tuple pickle_state(const py::object& self) {
+    const auto& world = self.cast<const SharedWorld&>();
+    return py::make_tuple(py::bytes(world.get().save()), world.threads(), attributes_of(self));
+}
+std::pair<SharedWorld, py::dict> of_state(const py::tuple& state) {
+    const auto threads = state[1].cast<int>();
+    const py::dict attributes = state[2];
+    if (!py::isinstance<SharedWorld>(state[0])) return {loaded(state[0], threads), attributes};
+    return {SharedWorld(state[0].cast<const SharedWorld&>().get(), threads), attributes};
+}
+
+py::object copy_with(const py::object& self, const py::dict& attributes) {
+    return made_like(self, py::type::of<SharedWorld>(),
+                     py::make_tuple(self, self.cast<const SharedWorld&>().threads(), attributes));
+}
+py::object copied(const py::object& self) { return copy_with(self, attributes_of(self)); }
+py::object deeply_copied(const py::object& self, const py::dict& memo) {
+    const py::dict attributes = attributes_of(self);
+    py::object made = copy_with(self, {});
+    // First: an attribute may lead back to the world.
+    memo[py::module_::import("builtins").attr("id")(self)] = made;
+    if (!attributes.empty())
+        made.attr("__dict__")
+            .attr("update")(py::module_::import("copy").attr("deepcopy")(attributes, memo));
+    return made;
 }
 
 std::string text_of(const SharedWorld& self) {
     const World& world = self.get();
     return fmt::format("<World: {} bodies, {} joints, t = {} s>", world.size(),
                        world.joint_ids().size(), world.time());
+}
+
+/// Returns what reads a setting.
+template <class T>
+auto setting(T PhysicsSettings::*member) {
+    return [member](const SharedWorld& self) { return self.get().settings().*member; };
 }
 
 void add_settings(WorldClass& world) {
@@ -84,10 +141,25 @@ void add_settings(WorldClass& world) {
         .def_property("threads", &SharedWorld::threads, &SharedWorld::set_threads,
                       "The number of threads that step it; 0: as many as cores. It changes no "
                       "result.")
+        .def_property_readonly("steps_per_second", setting(&PhysicsSettings::steps_per_second),
+                               "A step advances by 1 over this [1/s].")
+        .def_property_readonly("substeps", setting(&PhysicsSettings::substeps),
+                               "A step consists of so many.")
+        .def_property_readonly("iterations", setting(&PhysicsSettings::iterations),
+                               "The solver sweeps at most so many times a sub-step.")
+        .def_property_readonly("tolerance", setting(&PhysicsSettings::tolerance),
+                               "The solver ends where a sweep changes no velocity by more [m/s].")
         .def_property_readonly(
-            "steps_per_second",
-            [](const SharedWorld& self) { return self.get().settings().steps_per_second; },
-            "A step advances by 1 over this [1/s].");
+            "integrator",
+            [](const SharedWorld& self) {
+                const auto which = self.get().settings().integrator;
+                return which == RotationIntegrator::kEuler ? "euler" : "midpoint";
+            },
+            "How bodies are turned: \"midpoint\" or \"euler\".")
+        .def_property_readonly("sleeping", setting(&PhysicsSettings::sleeping),
+                               "Whether bodies at rest are left out until something touches them.")
+        .def_property_readonly("seed", setting(&PhysicsSettings::seed),
+                               "A number that changes no motion; scenes have it, too.");
 }
 
 void add_state(WorldClass& world) {
@@ -108,7 +180,7 @@ Worlds can be pickled, too.
         .def_static("load", &loaded, arg("data"), arg("threads") = 0, R"(load(data, threads=0)
 --
 
-Makes a world from the bytes of save(). InputError if they are of something else, are damaged, or
+Makes a World from the bytes of save(), of any type that holds bytes. InputError if they are of something else, are damaged, or
 of a tesserae that moves bodies otherwise.
 
 >>> ts.World.load(b"no world")
@@ -117,13 +189,9 @@ Traceback (most recent call last):
 tesserae.InputError: ...
 )")
         .def("__copy__", &copied)
-        .def(
-            "__deepcopy__", [](const SharedWorld& self, const py::object&) { return copied(self); },
-            arg("memo"))
-        .def("__reduce__", [](const SharedWorld& self) {
-            return py::make_tuple(py::module_::import("tesserae.records").attr("loaded_world"),
-                                  py::make_tuple(py::bytes(self.get().save()), self.threads()));
-        });
+        .def("__deepcopy__", &deeply_copied, arg("memo"))
+        .def("__reduce__", &reduced)
+        .def(py::pickle(&pickle_state, &of_state));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ import numpy as np
 import tesserae as ts
 
 PACKAGE = pathlib.Path(ts.__file__).parent
-IN_PYTHON = {"page", "progress", "records", "settings"}  # their annotations stand in the source
+IN_PYTHON = {"arguments", "page", "progress", "records", "settings"}  # their annotations stand in the source
 
 
 def public_members(kind):

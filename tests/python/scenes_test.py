@@ -214,6 +214,19 @@ class Pictures(Folder):
         self.assertEqual((self.folder / "frame.png").read_bytes(), frame._repr_png_())
         self.assertFalse(np.array_equal(first["depth"], frame["depth"]))  # the ball has fallen
 
+    def test_pictures_are_numbered_from_0_and_files_named_as_what_they_are(self):
+        scene = ts.Scene.parse('body = [{ shape = "hypersphere", radius = 1 }]', {"render.size": [8, 8], "render.samples": 1})
+        world = scene.world()
+        with self.assertRaisesRegex(ts.InputError, "frame = -1: expected a number >= 0"):
+            scene.render(world, frame=-1)
+        picture = scene.render(world, frame=1000)
+        for name in ("look.jpg", "look.exr", "look"):
+            with self.assertRaisesRegex(ts.InputError, "expected a name that ends in .png"):
+                picture.write_preview(self.folder / name)
+        with self.assertRaisesRegex(ts.InputError, "expected a name that ends in .exr"):
+            picture.write_image(self.folder / "look.png")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_layers_outlive_their_picture(self):
         picture = self.scene.render(self.scene.world())
         depth, copy = picture["depth"], picture["depth"].copy()

@@ -26,6 +26,26 @@ SHAPES = [
 HULL = ts.Polychoron(POINTS)
 
 
+class Named:
+    """What a class of Python adds to a shape."""
+
+    def __init__(self, name, *arguments):
+        super().__init__(*arguments)
+        self.name = name
+
+
+class NamedBall(Named, ts.Hypersphere):
+    pass
+
+
+class NamedPlane(Named, ts.Hyperplane):
+    pass
+
+
+class NamedHull(Named, ts.Polychoron):
+    pass
+
+
 def outside_and_in(*distances):
     """The distance from a product of bodies, from those of its factors."""
     d = np.stack(distances, axis=-1)
@@ -132,6 +152,24 @@ class Shapes(unittest.TestCase):
                 self.assertIs(type(again), type(shape))
         self.assertNotEqual(ts.Hypersphere(1), ts.Hypersphere(2))
         self.assertNotEqual(ts.Hypersphere(1), 1)
+
+    def test_what_python_adds_to_a_class_is_kept(self):
+        turned = ts.rotor.rotate(ts.rotor.from_planes(xz=0.3, yw=1.1), [0.1, 0.2, 0.7, -0.4])
+        for kind, of, arguments in ((NamedBall, ts.Hypersphere, (0.1 + 0.2,)), (NamedPlane, ts.Hyperplane, (turned, 1 / 3)),
+                                    (NamedHull, ts.Polychoron, (POINTS,))):
+            shape = kind("mine", *arguments)
+            for other in (copy.copy(shape), copy.deepcopy(shape), pickle.loads(pickle.dumps(shape))):
+                self.assertIs(type(other), kind)
+                self.assertEqual((other.name, other), ("mine", of(*arguments)))
+            # The same bits also after many copies: a unit normal is not scaled again.
+            for _ in range(5):
+                shape = pickle.loads(pickle.dumps(shape))
+            self.assertEqual(shape, of(*arguments))
+
+    def test_damaged_pickles_are_refused(self):
+        for state in (({"radius": -1.0}, {}), ({"radius": "big"}, {}), ({}, {}), (), (3, 4)):
+            with self.assertRaises((TypeError, ValueError, KeyError, IndexError)):
+                ts.Hypersphere.__new__(ts.Hypersphere).__setstate__(state)
 
     def test_parameters_are_told(self):
         self.assertEqual(repr(ts.Cubinder(0.5, [1, 2])), "Cubinder(radius=0.5, size=(1.0, 2.0))")

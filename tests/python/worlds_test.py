@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Worlds against closed forms, and what they promise: numbers, threads, copies, errors."""
+"""Worlds against closed forms, and what they promise: numbers, threads, errors."""
 
 import copy
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 import unittest
@@ -171,138 +173,64 @@ class Numbers(unittest.TestCase):
         self.assertEqual(world.type(0).mass, np.inf)
         self.assertIsNone(world.type(0).collides_with)
 
+    def test_many_bodies_are_added_as_one_by_one(self):
+        random = np.random.default_rng(3)
+        position, velocity = random.uniform(-5, 5, (2, 40, 4))
+        rotor = ts.rotor.exp(random.uniform(-1, 1, (40, 6)))
+        one_by_one, at_once = ts.World(), ts.World()
+        for world in (one_by_one, at_once):
+            world.remove(world.add(ts.Hypersphere(1)))
+        box, omega = ts.Hyperbox([1, 2, 3, 4]), [0, 0, 1, 0, 0, 0]
+        for i in range(40):
+            one_by_one.add(box, mass=2, group=3, position=position[i], rotor=rotor[i], velocity=velocity[i], angular_velocity=omega)
+        ids = at_once.add_many(box, mass=2, group=3, position=position, rotor=rotor, velocity=velocity, angular_velocity=omega)
+        self.assertEqual(ids.tolist(), list(range(1, 41)))
+        self.assertEqual(at_once.save(), one_by_one.save())
+        self.assertEqual(at_once.add_many(box, position=np.zeros((0, 4))).tolist(), [])
+        before = at_once.save()
+        for arguments, text in (
+            ({}, "expected rows"),
+            ({"position": [0, 1, 0, 0]}, "expected rows"),
+            ({"position": position, "velocity": velocity[:3]}, "40 and 3 rows"),
+            ({"position": np.zeros((2, 3))}, r"\(n, 4\), got \(2, 3\)"),
+            ({"position": [[0] * 4, [0, np.nan, 0, 0]]}, r"position\[1\]\[1\] = nan"),
+            ({"rotor": [[1] + [0] * 7, [2] + [0] * 7]}, "row 1: rotor: is no rotation"),
+            ({"position": position, "mass": -1}, "mass = -1"),
+        ):
+            with self.assertRaisesRegex(ts.InputError, text):
+                at_once.add_many(box, **arguments)
+        self.assertEqual(at_once.save(), before)
+
+    def test_masses_are_those_of_the_types(self):
+        world = ts.World()
+        world.add(ts.Hyperplane([0, 1, 0, 0]))
+        gone = world.add(ts.Hypersphere(1), mass=7)
+        world.add_many(ts.Hypersphere(1), mass=3, position=np.zeros((2, 4)))
+        world.remove(gone)
+        np.testing.assert_array_equal(world.masses, [np.inf, 3, 3])
+
+    def test_settings_can_be_read(self):
+        given = dict(steps_per_second=100.0, substeps=2, iterations=7, tolerance=1e-9, integrator="euler", sleeping=True, seed=5)
+        world = ts.World(**given)
+        for other in (world, copy.copy(world), pickle.loads(pickle.dumps(world))):
+            self.assertEqual({name: getattr(other, name) for name in given}, given)
+        self.assertEqual(ts.World().integrator, "midpoint")
+
+    def test_what_stands_still_is_given_nothing_that_moves_it(self):
+        world = ts.World()
+        plane = ts.Hyperplane([0, 1, 0, 0])
+        for given in ({"mass": 3}, {"gravity_scale": 0}, {"damping": 1}):
+            with self.assertRaisesRegex(ts.InputError, f"{list(given)[0]} = .*a hyperplane never moves"):
+                world.add(plane, **given)
+        again = world.type(world.add(plane, friction=0.1, restitution=0.2))._asdict()
+        self.assertEqual(world.type(world.add(**again))._asdict(), again)
+
     def test_groups_that_do_not_collide_pass_through_each_other(self):
         world = ts.World(gravity=[0, 0, 0, 0])
         world.add(ts.Hypersphere(0.5), velocity=[4, 0, 0, 0], group=1, collides_with=[0])
         world.add(ts.Hypersphere(0.5), position=[2, 0, 0, 0], group=1)
         world.step(steps=240)
         np.testing.assert_allclose(world.position[:, 0], [4, 2], atol=1e-12)
-
-
-class Joints(unittest.TestCase):
-    def test_a_hinge_swings_as_a_pendulum(self):
-        world = ts.World(gravity=[0, -10, 0, 0], steps_per_second=2000)
-        ball = ts.Hypersphere(0.1)
-        bob = world.add(ball, mass=2, position=[0.05, -1, 0, 0])
-        hinge = world.join("hinge", bob, anchor=[0, 0, 0, 0], plane="xy")
-        length = np.hypot(0.05, 1)
-        inertia = 2 * ball.second_moments()[0] + length**2  # per kg
-        period = 2 * np.pi * np.sqrt(inertia / (10 * length)) * (1 + np.arctan(0.05) ** 2 / 16)
-        crossings, before = [], world.position[0, 0]
-        while len(crossings) < 3:
-            world.step()
-            now = world.position[0, 0]
-            if before > 0 >= now or before < 0 <= now:
-                crossings.append(world.time + now / (before - now) / 2000)
-            before = now
-        # A step of 0.5 ms: its error is of second order, 1e-6 of the period.
-        self.assertAlmostEqual((crossings[2] - crossings[0]) / period, 1, delta=1e-4)
-        reading = world.joint(hinge)
-        self.assertEqual((reading.a, reading.b, reading.broken), (bob, None, False))
-        self.assertLess(reading.error, 1e-6)
-
-    def test_each_type_holds_what_it_says(self):
-        def held(type, **keys):
-            world = ts.World(gravity=[0, 0, 0, 0])
-            a = world.add(ts.Hypersphere(0.5), fixed_position=True, fixed_rotation=True)
-            b = world.add(ts.Hypersphere(0.5), position=[2, 0, 0, 0], velocity=[0, 1, 0.5, 0.25],
-                          angular_velocity=[0, 0.3, 0, 0, 0.2, 0])
-            joint = world.join(type, a, b, **keys)
-            world.step(steps=120)
-            self.assertEqual(world.joint_ids.tolist(), [joint])
-            return world.state(b), world.joint(joint)
-
-        centre = [2, 0, 0, 0]
-        state, _ = held("point", anchor=centre)
-        np.testing.assert_allclose(state.position, centre, atol=1e-6)
-        state, _ = held("weld", anchor=centre)
-        np.testing.assert_allclose(state.rotor, ts.rotor.identity(), atol=1e-6)
-        state, _ = held("distance")
-        self.assertAlmostEqual(np.linalg.norm(state.position), 2, places=4)
-        state, _ = held("rope", length=2.2)
-        self.assertLess(np.linalg.norm(state.position), 2.2 + 1e-4)
-        state, reading = held("slider", axis=[0, 1, 0, 0])
-        np.testing.assert_allclose(state.position, [2, 0.5, 0, 0], atol=1e-3)
-        self.assertAlmostEqual(reading.position, 0.5, places=3)
-        state, _ = held("general", anchor=centre, free=["z", "yw"], limits={"z": (-1, 0.1)})
-        np.testing.assert_allclose(state.position, [2, 0, 0.1, 0], atol=1e-3)
-        np.testing.assert_allclose(state.rotor, ts.rotor.from_planes(yw=0.1), atol=1e-6)
-        state, _ = held("swivel", anchor=centre, axis=[1, 0, 0, 0])
-        np.testing.assert_allclose(ts.rotor.rotate(state.rotor, [1, 0, 0, 0]), [1, 0, 0, 0], atol=1e-6)
-        state, _ = held("spring", length=2, stiffness=1e4, damping_force=100)
-        self.assertAlmostEqual(np.linalg.norm(state.position), 2, places=3)
-        _, reading = held("distance", breaks={"force": 1e-3})
-        self.assertTrue(reading.broken)
-
-    def test_motors_drive(self):
-        world = ts.World(gravity=[0, 0, 0, 0])
-        wheel = world.add(ts.Hypersphere(1))
-        hinge = world.join("hinge", wheel, anchor=[0, 0, 0, 0], plane=([1, 0, 0, 0], [0, 0, 0, 1]), motor={"speed": 3})
-        world.step(steps=120)
-        np.testing.assert_allclose(world.angular_velocity[0], [0, 0, 3, 0, 0, 0], atol=1e-6)
-        world.remove_joint(hinge)
-        self.assertFalse(world.has_joint(hinge))
-        self.assertEqual(len(world.joint_ids), 0)
-
-    def test_bad_joints_are_told(self):
-        world = ts.World()
-        a = world.add(ts.Hypersphere(1))
-        cases = [
-            (("hing",), {}, 'type "hing": expected one of point'),
-            (("hinge",), {"anchor": [0] * 4}, "plane is missing"),
-            (("hinge",), {"anchor": [0] * 4, "plane": "xq"}, 'axis "q"'),
-            (("hinge",), {"anchor": [0] * 4, "plane": "xy", "length": 3}, "unknown key 'length'.*anchor, plane"),
-            (("hinge",), {"anchor": [0] * 4, "plane": "xy", "motor": {"sped": 3}}, "joint.motor: unknown key 'sped'"),
-            (("general",), {"anchor": [0] * 4, "free": ["x"], "limits": {"y": (0, 1)}}, "limits.y: this coordinate is held"),
-            (("general",), {"anchor": [0] * 4, "free": "zw"}, "free: expected a list"),
-            (("general",), {"anchor": [0] * 4, "free": ["q"]}, 'free coordinate "q"'),
-            (("point",), {"anchor": [0, 0, 0, np.nan]}, "anchor.*nan"),
-            (("distance",), {}, "anchors"),
-        ]
-        for arguments, keys, text in cases:
-            with self.assertRaisesRegex(ts.InputError, text):
-                world.join(*arguments, a, **keys)
-        with self.assertRaisesRegex(ts.InputError, "a = 7|body 7"):
-            world.join("point", 7, anchor=[0] * 4)
-
-
-class States(unittest.TestCase):
-    def test_any_number_of_threads_gives_the_same_bytes(self):
-        states = set()
-        for threads in (1, 2, 4):
-            world = heap(threads)
-            world.step(steps=120)
-            states.add(world.save())
-        self.assertEqual(len(states), 1)
-
-    def test_copies_and_pickles_go_on_with_the_same_bits(self):
-        world = heap(sleeping=True)
-        world.join("rope", 5, 6, length=3)
-        world.step(steps=100)
-        world.remove(3)
-        others = [pickle.loads(pickle.dumps(world)), copy.copy(world), copy.deepcopy(world),
-                  ts.World.load(world.save(), threads=2)]
-        self.assertEqual(others[3].threads, 2)
-        world.step(steps=60)
-        for other in others:
-            other.step(steps=60)
-            self.assertEqual(other.save(), world.save())
-            self.assertEqual(other.position.tobytes(), world.position.tobytes())
-        self.assertEqual(others[0].add(ts.Hypersphere(1)), 61)  # numbers go on, too
-
-    def test_one_call_of_many_steps_is_many_calls_of_one(self):
-        a, b = heap(), heap()
-        a.step(steps=30)
-        for _ in range(30):
-            report = b.step()
-        self.assertEqual(a.save(), b.save())
-        self.assertGreater(report.contacts, 0)
-
-    def test_damaged_bytes_are_refused(self):
-        data = heap(count=5).save()
-        for wrong in (b"", data[:-1], data[:50], data + b"x", bytes([data[0] ^ 1]) + data[1:]):
-            with self.assertRaises(ts.InputError):
-                ts.World.load(wrong)
 
 
 class Errors(unittest.TestCase):
@@ -381,6 +309,18 @@ class Threads(unittest.TestCase):
         stepping.join()
         self.assertGreater(refused, 3)
         self.assertEqual(len(world), 61)  # and can be used again
+
+    def test_worlds_of_several_numbers_of_threads_live_beside_each_other(self):
+        program = """
+import tesserae as ts
+worlds = [ts.World(threads=n) for n in (1, 2, 4, 3, 8)]
+for world in worlds:
+    world.add_many(ts.Hypersphere(0.3), position=[[i, 0, 0, 0] for i in range(100)])
+    world.step(steps=3)
+assert len({world.save() for world in worlds}) == 1
+"""
+        ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+        self.assertEqual((ran.returncode, ran.stdout, ran.stderr), (0, "", ""))
 
     def test_ctrl_c_stops_between_steps(self):
         world = heap(count=20)

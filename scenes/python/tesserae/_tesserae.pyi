@@ -1,7 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-from typing import Any
-
-from . import Hyperplane as Hyperplane
-from . import World as World
-
-def _unit_plane(normal: Any, offset: float) -> Hyperplane: ...
+# What is public of it is in the stub of the package.

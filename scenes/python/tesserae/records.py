@@ -2,13 +2,13 @@
 """What worlds, scenes and films tell, as named tuples."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple, Type
+from typing import TYPE_CHECKING, NamedTuple, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from . import Shape, World
+    from . import Shape
 
 __all__ = ["BodyState", "BodyType", "ContactChanges", "FilmResult", "JointReading", "Nearest", "RayHit",
            "SimulationResult", "StepReport"]
@@ -109,17 +109,3 @@ class FilmResult(NamedTuple):
     seconds: float
     frames: Path  #: the folder of the images
     preview: Path  #: of the last frame
-
-
-def made_shape(kind: "Type[Shape]", parameters: Dict[str, Any]) -> "Shape":
-    """Makes a shape again that was pickled."""
-    from ._tesserae import _unit_plane, Hyperplane
-
-    return _unit_plane(**parameters) if kind is Hyperplane else kind(**parameters)
-
-
-def loaded_world(data: bytes, threads: int) -> "World":
-    """Makes a world again that was pickled."""
-    from ._tesserae import World
-
-    return World.load(data, threads)

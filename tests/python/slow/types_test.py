@@ -17,6 +17,11 @@ import tesserae as ts
 world = ts.World(gravity=[0, -10, 0, 0], threads=2)
 ball: int = world.add(ts.Hypersphere(0.5), mass=2, position=np.zeros(4))
 world.join("hinge", ball, anchor=[0, 0, 0, 0], plane="xy", motor={"speed": 3})
+balls = world.add_many(ts.Hypersphere(0.5), position=np.zeros((3, 4)))
+last: int = int(balls[-1])
+again: ts.World = ts.World.load(bytearray(world.save()))
+heaviest: float = float(world.masses.max())
+settings = (world.substeps + world.iterations + world.seed, world.tolerance, world.integrator.upper(), world.sleeping)
 world.velocity = np.zeros((1, 4))
 contacts: int = world.step(steps=3).contacts
 hit = world.ray([0, 0, 0, -5], [0, 0, 0, 1])
@@ -32,6 +37,9 @@ WRONG = [
     ("ts.World().join('hinge', 0, anchor=[0, 0, 0, 0], length=3)", "call-overload"),
     ("ts.World().ray([0] * 4, [0] * 4).point", "union-attr"),
     ("ts.World().time = 3", "misc"),
+    ("ts.World().iterations = 3", "misc"),
+    ("ts.World().add_many(ts.Hypersphere(1), positions=[[0] * 4])", "call-arg"),
+    ("ts.World.load('text')", "arg-type"),
     ("ts.rotor.exp()", "call-arg"),
 ]
 
