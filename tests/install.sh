@@ -23,7 +23,7 @@ FILES
 # Where the Python module is built, it is installed too; its test is tests/python.
 modules=$(cd "$folder/local" && ls -d lib/python3.*/site-packages/tesserae 2>/dev/null) || true
 if [ -n "$modules" ]; then
-    for file in __init__.py __init__.pyi py.typed rotor.py rotor.pyi _tesserae.pyi page.py progress.py records.py settings.py; do
+    for file in __init__.py __init__.pyi py.typed rotor.py rotor.pyi _tesserae.pyi arguments.py page.py progress.py records.py settings.py; do
         echo "$modules/$file"
     done >>"$folder/expected"
     (cd "$folder/local" && ls "$modules"/_cpu.*.so "$modules"/_tesserae.*.so) >>"$folder/expected"

@@ -56,6 +56,14 @@ double real_of(py::handle value, const std::string& name) {
     throw py::type_error(
         fmt::format("{}: expected a number, got {}", name, py::repr(value).cast<std::string>()));
 }
+std::int64_t integer_of(py::handle value, const std::string& name) {
+    const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
+    const std::int64_t integer = number ? PyLong_AsLongLong(number.ptr()) : 0;
+    if (PyErr_Occurred() == nullptr) return integer;
+    PyErr_Clear();
+    throw py::type_error(
+        fmt::format("{}: expected an integer, got {}", name, py::repr(value).cast<std::string>()));
+}
 Vec4 vec4_of(py::handle value, const char* name) {
     Vec4 vector;
     copy_numbers(value, name, vector.data(), 4);

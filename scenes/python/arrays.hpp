@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@ Numbers numbers_of(py::handle value, const char* name);
 /// @throws py::type_error   it is no number, or these are none
 /// @throws InputError       they are too few or too many
 double real_of(py::handle value, const std::string& name);
+std::int64_t integer_of(py::handle value, const std::string& name);
 Vec4 vec4_of(py::handle value, const char* name);
 Vec2 vec2_of(py::handle value, const char* name);
 Bivector bivector_of(py::handle value, const char* name);

@@ -20,9 +20,12 @@ using py::arg;
 /// Returns a bit for each of some groups; None are all.
 std::uint64_t groups_of(const py::object& groups) {
     if (groups.is_none()) return kAllGroups;
+    if (!py::isinstance<py::iterable>(groups))
+        throw py::type_error(fmt::format("collides_with: expected a list of groups, got {}",
+                                         py::repr(groups).cast<std::string>()));
     std::uint64_t bits = 0;
     for (const py::handle group : groups) {
-        const auto number = group.cast<int>();
+        const std::int64_t number = integer_of(group, "collides_with");
         if (number < 0 || number >= kMostGroups)
             throw InputError(fmt::format("collides_with: group {}: expected a number from 0 to {}",
                                          number, kMostGroups - 1));
@@ -165,11 +168,8 @@ py::array ids_of(const SharedWorld& self) {
 }
 
 bool has(const SharedWorld& self, const py::object& body) {
-    if (PyIndex_Check(body.ptr()) == 0) return false;
-    const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(body.ptr()));
-    const auto id = PyLong_AsLongLong(number.ptr());
-    if (PyErr_Occurred() != nullptr) PyErr_Clear();
-    return id >= 0 && id < kWorld && self.get().has(static_cast<BodyId>(id));
+    const std::optional<BodyId> id = number_in(body);
+    return id && self.get().has(*id);
 }
 
 /// An array of a world, (n, width), as property: read without a copy, set as a whole.

@@ -10,6 +10,7 @@
 #include "core/dynamics/constraints/joint_rules.hpp"
 #include "core/error.hpp"
 #include "core/world/check.hpp"
+#include "scenes/load/nearest_name.hpp"
 #include "scenes/python/record.hpp"
 #include "scenes/python/world.hpp"
 
@@ -38,7 +39,10 @@ std::size_t place_in(const Names& names, const std::string& name, const char* wh
 /// A table of keys that are read one by one. What is left in the end is an error.
 class Keys {
   public:
-    Keys(std::string place, const py::handle& table) : place_(std::move(place)) {
+    /// @param place   of the table
+    /// @param of      what its values are called by, if that is not the place
+    Keys(std::string place, const py::handle& table, const char* of = nullptr)
+        : place_(std::move(place)), of_(of != nullptr ? of : place_) {
         if (!py::isinstance<py::dict>(table))
             throw py::type_error(fmt::format("{}: expected a dict, got {}", place_,
                                              py::repr(table).cast<std::string>()));
@@ -54,23 +58,48 @@ class Keys {
     }
     py::object require(const char* name, const char* expected) {
         py::object value = take(name);
-        if (!value)
-            throw InputError(fmt::format("{}: {} is missing: expected {}", place_, name, expected));
-        return value;
+        if (value) return value;
+        // What was typed instead, if a letter is wrong in it.
+        const std::vector<std::string> given = names_left();
+        const std::string_view near = scenes::nearest_name(name, viewed(given));
+        const std::string instead = near.empty() ? "" : fmt::format(", and there is '{}'", near);
+        throw InputError(
+            fmt::format("{}: {} is missing{}: expected {}", place_, name, instead, expected));
     }
     void take_real(const char* name, std::optional<double>& value) {
-        if (const py::object given = take(name)) value = real_of(given, place_ + "." + name);
+        if (const py::object given = take(name)) value = real_of(given, of_ + "." + name);
+    }
+    void take_truth(const char* name, bool& value) {
+        const py::object given = take(name);
+        if (!given) return;
+        try {
+            value = given.cast<bool>();
+        } catch (const py::cast_error&) {
+            throw py::type_error(fmt::format("{}.{}: expected True or False, got {}", of_, name,
+                                             py::repr(given).cast<std::string>()));
+        }
     }
     /// @throws InputError   a key was not taken
     void finish() const {
-        for (const auto& [name, value] : keys_)
-            throw InputError(fmt::format("{}: unknown key {}: expected {}", place_,
-                                         py::repr(name).cast<std::string>(), joined(known_)));
+        for (const std::string& name : names_left())
+            throw InputError(fmt::format("{}: unknown key '{}': expected {}{}", place_, name,
+                                         joined(known_),
+                                         scenes::did_you_mean(name, viewed(known_))));
     }
-    const std::string& place() const { return place_; }
+    /// What its values are called by in errors.
+    const std::string& of() const { return of_; }
 
   private:
-    std::string place_;
+    std::vector<std::string> names_left() const {
+        std::vector<std::string> names;
+        for (const auto& [name, value] : keys_) names.push_back(py::str(name).cast<std::string>());
+        return names;
+    }
+    static std::vector<std::string_view> viewed(const std::vector<std::string>& names) {
+        return {names.begin(), names.end()};
+    }
+
+    std::string place_, of_;
     py::dict keys_;
     std::vector<std::string> known_;
 };
@@ -110,7 +139,7 @@ void read_coordinates(Keys& keys, const char* name, std::uint16_t free, OfCoordi
                       Read&& read) {
     const py::object table = keys.take(name);
     if (!table) return;
-    Keys inside(keys.place() + "." + name, table);
+    Keys inside(keys.of() + "." + name, table);
     for (std::size_t i = 0; i < kJointCoordinates; ++i) {
         const std::string coordinate(kCoordinateNames[i]);
         const py::object value = inside.take(coordinate.c_str());
@@ -118,8 +147,8 @@ void read_coordinates(Keys& keys, const char* name, std::uint16_t free, OfCoordi
         if ((free >> i & 1) == 0)
             throw InputError(
                 fmt::format("{}.{}: this coordinate is held; expected one that is free",
-                            inside.place(), coordinate));
-        values[i] = read(inside.place() + "." + coordinate, value);
+                            inside.of(), coordinate));
+        values[i] = read(inside.of() + "." + coordinate, value);
     }
     inside.finish();
 }
@@ -129,15 +158,17 @@ JointPlane plane_of(const py::object& value) {
         const auto name = value.cast<std::string>();
         if (name.size() != 2 || name[0] == name[1])
             throw InputError(
-                fmt::format("joint: plane \"{}\": expected two axes, such as \"xy\"", name));
+                fmt::format("joint.plane = \"{}\": expected two axes, such as \"xy\"", name));
         const auto axis = [&](std::size_t i) {
             return Vec4::Unit(static_cast<int>(place_in(kAxes, name.substr(i, 1), "axis")));
         };
         return {axis(0), axis(1)};
     }
-    const Rows directions(value, "joint: plane", 4);
-    if (directions.is_single() || directions.count() != 2)
-        throw InputError("joint: plane: expected two axes, such as \"xy\", or two directions");
+    constexpr const char* kExpected =
+        "joint.plane: expected two axes, such as \"xy\", or two directions";
+    if (numbers_of(value, "joint.plane").ndim() != 2) throw InputError(kExpected);
+    const Rows directions(value, "joint.plane", 4);
+    if (directions.count() != 2) throw InputError(kExpected);
     return {directions.vec4(0), directions.vec4(1)};
 }
 
@@ -159,12 +190,13 @@ void read_general(Keys& keys, JointDescription& joint) {
     read_anchor(keys, joint);
     if (const auto rotor = keys.take("rotor")) joint.rotation = rotor_of(rotor, "joint.rotor");
     const py::object free = keys.require("free", "a list such as [\"x\", \"yz\"]");
-    if (py::isinstance<py::str>(free))
-        throw InputError("general joint: free: expected a list such as [\"x\", \"yz\"]");
-    for (const py::handle name : free)
+    if (py::isinstance<py::str>(free) || !py::isinstance<py::iterable>(free))
+        throw InputError("joint.free: expected a list such as [\"x\", \"yz\"]");
+    for (const py::handle name : free) {
+        const auto text = py::str(name).cast<std::string>();
         joint.free = static_cast<std::uint16_t>(
-            joint.free |
-            1u << place_in(kCoordinateNames, name.cast<std::string>(), "free coordinate"));
+            joint.free | 1u << place_in(kCoordinateNames, text, "free coordinate"));
+    }
     read_coordinates(keys, "limits", joint.free, joint.limits, limits_of);
     read_coordinates(keys, "spring", joint.free, joint.springs, spring_of);
     read_coordinates(keys, "motor", joint.free, joint.motors, motor_of);
@@ -223,7 +255,7 @@ JointId join(SharedWorld& self, const std::string& type, const py::object& a, co
              const py::kwargs& given) {
     JointDescription joint;
     joint.type = static_cast<JointType>(place_in(kJointTypeNames, type, "type"));
-    Keys keys(type + " joint", given);
+    Keys keys(type + " joint", given, "joint");
     read_type(keys, joint);
     if (const auto breaks = keys.take("breaks")) {
         Keys inside("joint.breaks", breaks);
@@ -232,7 +264,7 @@ JointId join(SharedWorld& self, const std::string& type, const py::object& a, co
         inside.take_real("torque", joint.breaks->torque);
         inside.finish();
     }
-    if (const auto collide = keys.take("collide")) joint.collide = collide.cast<bool>();
+    keys.take_truth("collide", joint.collide);
     keys.finish();
     if (a.is_none()) throw InputError("joint: a = None: expected a body; the world may be b");
     // The world checks it, too, and would name its parts in C++.
@@ -291,7 +323,10 @@ Removes a joint.
 )");
     world.def(
         "has_joint",
-        [](const SharedWorld& self, JointId number) { return self.get().has_joint(number); },
+        [](const SharedWorld& self, const py::object& number) {
+            const std::optional<JointId> id = number_in(number);
+            return id && self.get().has_joint(*id);
+        },
         arg("joint"), R"(has_joint(self, joint)
 --
 

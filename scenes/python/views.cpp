@@ -88,9 +88,9 @@ Scene scene_around(const World& world) {
     return Scene::parse(text.cast<std::string>(), {}, "world.toml");
 }
 
-py::object view_world(SharedWorld& self, const py::object& scene, int height) {
+py::object view_world(SharedWorld& self, const Scene* scene, int height) {
     SharedWorld::Use use(self);
-    const Scene looks = scene.is_none() ? scene_around(use.world()) : scene.cast<const Scene&>();
+    const Scene looks = scene == nullptr ? scene_around(use.world()) : *scene;
     const TemporaryFolder folder;
     std::string text;
     run_watched(py::none(), [&](const Control&) {

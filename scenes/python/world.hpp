@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "core/world/world.hpp"
@@ -70,6 +71,8 @@ void add_views(WorldClass& world);
 /// @throws InputError   count < 0
 std::shared_ptr<Workers> workers_of(int count);
 
+/// Returns what may be the number of a body or joint; nothing for any other object.
+std::optional<BodyId> number_in(const py::object& object);
 /// Returns the number of a body: None is the world.
 BodyId body_of(const py::object& body, const char* name);
 

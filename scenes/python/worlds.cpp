@@ -203,21 +203,23 @@ void SharedWorld::set_threads(int threads) {
     threads_ = threads;
 }
 
+std::optional<BodyId> number_in(const py::object& object) {
+    if (PyIndex_Check(object.ptr()) == 0) return {};
+    const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
+    if (!number) throw py::error_already_set();
+    int overflow = 0;
+    const long long id = PyLong_AsLongLongAndOverflow(number.ptr(), &overflow);
+    if (overflow != 0 || id < 0 || id >= kWorld) return {};
+    return static_cast<BodyId>(id);
+}
+
 BodyId body_of(const py::object& body, const char* name) {
     if (body.is_none()) return kWorld;
-    const py::object number = py::reinterpret_steal<py::object>(PyNumber_Index(body.ptr()));
-    if (!number) {
-        PyErr_Clear();
-        throw py::type_error(
-            fmt::format("{}: expected a number, got {}", name, py::repr(body).cast<std::string>()));
-    }
-    const auto id = PyLong_AsLongLong(number.ptr());
-    // What is too large for a number is no body's either; the world says so.
-    if (PyErr_Occurred() != nullptr) PyErr_Clear();
-    if (id < 0 || id >= kWorld)
-        throw InputError(fmt::format("{} = {}: the world has none with this number", name,
-                                     py::repr(body).cast<std::string>()));
-    return static_cast<BodyId>(id);
+    if (const std::optional<BodyId> id = number_in(body)) return *id;
+    const auto text = py::repr(body).cast<std::string>();
+    if (PyIndex_Check(body.ptr()) == 0)
+        throw py::type_error(fmt::format("{}: expected a number, got {}", name, text));
+    throw InputError(fmt::format("{} = {}: the world has none with this number", name, text));
 }
 
 void add_worlds(py::module_& module) {

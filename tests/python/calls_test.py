@@ -168,6 +168,17 @@ class Arguments(unittest.TestCase):
             (lambda: scene.body(3), "Scene.body(): name = 3: expected a string"),
             (lambda: scene.render(5), "Scene.render(): world = 5: expected a World"),
             (lambda: ts.Trajectory(3), "Trajectory(): path = 3: expected a path"),
+            (lambda: world.view(5), "World.view(): scene = 5: expected a Scene, or None"),
+            (lambda: world.view(None, height="high"), "World.view(): height = 'high': expected an integer"),
+            (lambda: scene.film("x", frames=5), "Scene.film(): frames = 5: expected a list of integers"),
+            (lambda: scene.film("x", frames=["a"]), "Scene.film(): frames = ['a']: expected a list of integers"),
+            (lambda: ts.Duoprism([3], [1, 1]), "Duoprism(): polygons = [3]: expected 2 integers"),
+            (lambda: ts.Duoprism([3, 4.5], [1, 1]), "Duoprism(): polygons = [3, 4.5]: expected 2 integers"),
+            (lambda: world.add(ball, collides_with=["a"]), "collides_with: expected an integer, got 'a'"),
+            (lambda: world.add(ball, collides_with=3), "collides_with: expected a list of groups, got 3"),
+            (lambda: ts.Scene.parse("", 5), 'sets: expected a dict, or a list of "KEY=VALUE"'),
+            (lambda: ts.Scene.parse("", [3]), 'sets: expected a dict, or a list of "KEY=VALUE"'),
+            (lambda: scene.render(world)[3], "Picture.__getitem__(): layer = 3: expected a string"),
         ]
         for call, text in cases:
             self.assertEqual(error_of(call), (TypeError, text))

@@ -96,6 +96,10 @@ class Joints(unittest.TestCase):
             (("general",), {"anchor": [0] * 4, "free": ["q"]}, 'free coordinate "q"'),
             (("point",), {"anchor": [0, 0, 0, np.nan]}, "anchor.*nan"),
             (("distance",), {}, "anchors"),
+            (("point",), {"anchr": [0] * 4}, r"^point joint: anchor is missing, and there is 'anchr': expected the point"),
+            (("hinge",), {"anchor": [0] * 4, "plane": "xy", "limit": (-1, 1)}, "unknown key 'limit': expected .*did you mean \"limits\""),
+            (("hinge",), {"anchor": [0] * 4, "plane": 3}, r"^joint\.plane: expected two axes"),
+            (("general",), {"anchor": [0] * 4, "free": [3]}, 'free coordinate "3"'),
             # All by the keys that were typed.
             (("hinge",), {"anchor": [0] * 4, "plane": "xy", "limits": (-4, 1)}, r"^joint\.limits = -4: expected a number from -3\.14"),
             (("hinge",), {"anchor": [0] * 4, "plane": "xy", "limits": (1, 2)}, r"^joint\.limits: expected limits with 0 between"),
@@ -116,6 +120,13 @@ class Joints(unittest.TestCase):
         for arguments, keys, text in cases:
             with self.assertRaisesRegex(ts.InputError, text):
                 world.join(*arguments, a, **keys)
+        for keys, text in (({"collide": "yes"}, r"^joint\.collide: expected True or False, got 'yes'"),
+                           ({"breaks": {"force": "big"}}, r"^joint\.breaks\.force: expected a number, got 'big'"),
+                           ({"breaks": 3}, r"^joint\.breaks: expected a dict, got 3")):
+            with self.assertRaisesRegex(TypeError, text):
+                world.join("point", a, anchor=[0] * 4, **keys)
+        for number in (-1, 7, 2**70, "axle", None):
+            self.assertFalse(world.has_joint(number))
         with self.assertRaisesRegex(ts.InputError, "a = 7|body 7"):
             world.join("point", 7, anchor=[0] * 4)
 

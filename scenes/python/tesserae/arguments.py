@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple
 
 #: What is expected where the module's functions take a type of C++.
 _WORDS = {"bool": "True or False", "float": "a number", "int": "an integer", "str": "a string"}
+_INTEGERS = re.compile(r"[Ll]ist\[int(?:\[(\d+)\])?\]")
 #: What newer versions of pybind11 call a type.
 _OTHER_NAMES = {"Union[os.PathLike, str, bytes]": "os.PathLike", "typing.SupportsFloat": "float", "typing.SupportsInt": "int"}
 
@@ -28,6 +29,11 @@ def _is_of(value: Any, kind: str) -> bool:
         return isinstance(value, bool) or type(value).__name__ in ("bool_", "bool")
     if kind == "os.PathLike":
         return isinstance(value, (str, bytes)) or hasattr(value, "__fspath__")
+    integers = _INTEGERS.fullmatch(kind)
+    if integers:
+        if not hasattr(value, "__iter__") or integers[1] and len(list(value)) != int(integers[1]):
+            return False
+        return all(_is_of(part, "int") for part in value)
     if kind.startswith("tesserae."):
         return any(base.__name__ == kind.split(".")[-1] for base in type(value).__mro__)
     return True
@@ -38,6 +44,9 @@ def _expected(kind: str) -> str:
     optional = re.fullmatch(r"Optional\[(.*)\]", kind)
     if optional:
         return _expected(optional[1]) + ", or None"
+    integers = _INTEGERS.fullmatch(kind)
+    if integers:
+        return f"{integers[1]} integers" if integers[1] else "a list of integers"
     if kind.startswith("tesserae."):
         return "a " + kind.split(".")[-1]
     return _WORDS.get(kind, "a path" if kind == "os.PathLike" else kind)
@@ -62,10 +71,12 @@ def _signature_of(function: Callable[..., Any]) -> Optional[inspect.Signature]:
 
 def _given(told: str, args: Tuple[Any, ...], kwargs: Dict[str, Any]) -> List[Tuple[str, str, Any]]:
     """Returns name, type and value of the arguments, by the signature in what pybind11 has told."""
-    first = told.split("\n", 2)[1]
+    first = told.split("\n", 2)[1].replace("::", ".")  # of a class that was added later
     for other, kind in _OTHER_NAMES.items():
         first = first.replace(other, kind)
-    types = re.findall(r"(\w+): ([\w.]+(?:\[[^\]]*\])?)", first)
+    first = re.sub(r"Annotated\[list\[int\], FixedSize\((\d+)\)\]", r"List[int[\1]]", first)
+    found = re.findall(r"(\w+): ([\w.]+(?:\[[^\]]*\]+)?)( = None)?", first)
+    types = [(name, f"Optional[{kind}]" if default and not kind.startswith("Optional") else kind) for name, kind, default in found]
     if "incompatible constructor" in told:
         args = args[1:]
     positional = [(name, kind, value) for (name, kind), value in zip(types, args)]
@@ -92,7 +103,7 @@ def complaint(name: str, function: Callable[..., Any], told: str, args: Tuple[An
     given = _given(told, args, kwargs)
     for argument, kind, value in given:
         if not _is_of(value, kind):
-            what = name if signature is None else f"{name}(): {argument}"
+            what = name if argument.startswith("arg") else f"{name}(): {argument}"  # arg1 of a property
             return f"{what} = {reprlib.repr(value)}: expected {_expected(kind)}"
     for argument, kind, value in given:
         if kind == "int" and value < 0:  # of those that are right where they may be negative

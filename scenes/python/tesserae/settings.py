@@ -24,6 +24,7 @@ def set_texts(sets: Union[Mapping[str, Any], Iterable[str]]) -> List[str]:
     """Returns "KEY=VALUE" for each of a dict, or of texts that are such already."""
     if isinstance(sets, Mapping):
         return [f"{key}={toml_value(value)}" for key, value in sets.items()]
-    if isinstance(sets, str):
+    texts: List[Any] = list(sets) if isinstance(sets, Iterable) and not isinstance(sets, str) else [None]
+    if not all(isinstance(text, str) for text in texts):
         raise TypeError('sets: expected a dict, or a list of "KEY=VALUE"')
-    return list(sets)
+    return texts
