@@ -2,6 +2,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstddef>
+#include <exception>
 #include <string>
 
 #include "scenes/python/topics.hpp"
@@ -26,13 +27,12 @@ struct TellingFunction {
     std::string name;
 };
 
-/// Replaces the error of arguments that no function takes, which lists signatures of C++, by a line
-/// that names the wrong one. Other errors stay.
+/// Replaces a TypeError of arguments that no function takes, which lists signatures of C++, by a
+/// line that names the wrong one. Others stay.
 void tell_arguments(const TellingFunction& of, PyObject* arguments, PyObject* keywords) {
     py::error_already_set error;
     const std::string text = py::str(error.value()).cast<std::string>();
-    if (!error.matches(PyExc_TypeError) || text.find("(): incompatible ") == std::string::npos)
-        return error.restore();
+    if (text.find("(): incompatible ") == std::string::npos) return error.restore();
     const py::object named =
         keywords != nullptr ? py::reinterpret_borrow<py::object>(keywords) : py::object(py::dict());
     const py::object line =
@@ -44,11 +44,13 @@ void tell_arguments(const TellingFunction& of, PyObject* arguments, PyObject* ke
 PyObject* call(PyObject* self, PyObject* arguments, PyObject* keywords) {
     const auto& of = *static_cast<TellingFunction*>(PyCapsule_GetPointer(self, nullptr));
     PyObject* result = PyObject_Call(of.function.ptr(), arguments, keywords);
-    if (result != nullptr) return result;
+    if (result != nullptr || PyErr_ExceptionMatches(PyExc_TypeError) == 0) return result;
     try {
         tell_arguments(of, arguments, keywords);
     } catch (py::error_already_set& error) {
         error.restore();
+    } catch (const std::exception& error) {
+        PyErr_SetString(PyExc_TypeError, error.what());
     }
     return nullptr;
 }
