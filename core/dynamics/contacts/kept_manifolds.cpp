@@ -108,6 +108,17 @@ class KeptContacts {
         return std::max(margins.if_one_stops, kKeptMargin * slop_of(pair));
     }
 
+    /// Returns how far apart the balls about both are at least [m]; negative if they overlap or
+    /// there is none about one of them.
+    double between_balls(const BodyPair& pair) const {
+        const TypeProperties& type_a = simulation_.type_of(pair.a);
+        const TypeProperties& type_b = simulation_.type_of(pair.b);
+        if (!type_a.bounded || !type_b.bounded) return -1;
+        const double both = type_a.radius + type_b.radius;
+        return (step_.position[pair.b] - step_.position[pair.a]).norm() -
+               (1 + kDistanceSlack) * both;
+    }
+
     /// @param last   what the sub-step before this one kept of the pair, or null
     /// @return how far apart both are at least [m], as far as it is known
     double find(const BodyPair& pair, const Margins& margins,
@@ -333,8 +344,9 @@ void find_kept_contacts(const Simulation& simulation, const StepData& step, Rang
         const auto* const kept_before = kept_of.find(pair);
         double apart = kept_before ? 0 : clearance_of.left(pair);
         const Margins margins = margins_of(simulation, step, pair.a, pair.b);
-        if (!(apart > contacts.looks_to(pair, margins)))
-            apart = contacts.find(pair, margins, kept_before);
+        const double looks_to = contacts.looks_to(pair, margins);
+        if (!(apart > looks_to) && !kept_before) apart = contacts.between_balls(pair);
+        if (!(apart > looks_to)) apart = contacts.find(pair, margins, kept_before);
         clearances.set(i, apart);
     }
     contacts.end();

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <tuple>
 
-#include "core/dynamics/motion/free_path.hpp"
 #include "core/dynamics/motion/motion.hpp"
 
 namespace tesserae {
@@ -13,6 +14,18 @@ namespace {
 
 /// Bodies and pairs of a range at least. An impact's time takes some 10 us.
 constexpr std::size_t kFastGrain = 1024, kImpactGrain = 16;
+
+/// Gaps that a half may find before searches end early, in all and of each body, and as many again
+/// where bodies have been stopped before all are. Usual 4000 and 8: some ten steps of a heap.
+/// Fewer: more bodies lose a part of a sub-step. More: a step takes longer in which all bodies of a
+/// heap are fast.
+constexpr std::size_t kGapsOfAll = 4000, kGapsOfBody = 8;
+
+/// Pairs that are looked at again, for each of these gaps. Usual 32: that costs about as much.
+constexpr std::size_t kLooksOfGap = 32;
+
+/// The place of a body that no candidate has.
+constexpr std::uint32_t kUnlisted = std::numeric_limits<std::uint32_t>::max();
 
 /// Its motion may end; what is driven and what sleeps goes on as it does.
 bool can_stop(const Simulation& simulation, const StepData& step, BodyId id) {
@@ -37,6 +50,8 @@ double kept_speed(const Vec4& gravity, double h, const Vec4& v, double part,
 
 void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& schedule, Half half) {
     find_candidates(simulation, step, schedule);
+    find_paths(simulation, step, schedule);
+    find_impacts(schedule);
     list_impacts();
     if (fast_bodies_.empty()) return;
     stop_.assign(simulation.bodies.size(), kNoImpact);
@@ -44,7 +59,9 @@ void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& sc
     take_impacts(simulation, step);
 
     for (const BodyId id : stopped_) {
-        const FreePath::State state = FreePath(simulation, step, id).at(stop_[id]);
+        const FreePath::State state = place_[id] == kUnlisted
+                                          ? FreePath(simulation, step, id).at(stop_[id])
+                                          : path_of(id).at(stop_[id]);
         step.position[id] = state.position;
         const Vec4 gravity = simulation.type_of(id).gravity_scale * simulation.settings.gravity;
         if (!gravity.isZero(0))
@@ -57,13 +74,18 @@ void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& sc
     }
 }
 
+std::size_t FastBodies::gaps() const {
+    std::size_t sum = 0;
+    for (const ImpactSearch& search : searches_) sum += search.gaps;
+    return sum;
+}
+
 void FastBodies::find_candidates(const Simulation& simulation, const StepData& step,
                                  Schedule& schedule) {
     const auto for_each_range = [&](std::size_t count, std::size_t grain, const auto& work) {
         schedule.for_each_range(count, grain, work);
     };
     is_fast_.resize(simulation.bodies.size());
-    stop_.clear();
     schedule.for_each_range(is_fast_.size(), kFastGrain, [&](Range bodies) {
         for (std::size_t i = bodies.begin; i < bodies.end; ++i)
             is_fast_[i] = is_fast(simulation, step, static_cast<BodyId>(i));
@@ -77,14 +99,54 @@ void FastBodies::find_candidates(const Simulation& simulation, const StepData& s
             }
         },
         candidates_);
-    const std::size_t ranges = candidates_.size() / kImpactGrain + 1;
-    if (scratch_.size() < ranges) scratch_.resize(ranges);
-    schedule.for_each_range(candidates_.size(), kImpactGrain, [&](Range range) {
-        std::vector<Contact>& scratch = scratch_[range.begin / kImpactGrain];
+}
+
+/// A body's path is the same for all that it may meet.
+void FastBodies::find_paths(const Simulation& simulation, const StepData& step,
+                            Schedule& schedule) {
+    place_.assign(simulation.bodies.size(), kUnlisted);
+    for (const Candidate& candidate : candidates_) place_[candidate.a] = place_[candidate.b] = 0;
+    listed_.clear();
+    for (BodyId id = 0; id < place_.size(); ++id) {
+        if (place_[id] == kUnlisted) continue;
+        place_[id] = static_cast<std::uint32_t>(listed_.size());
+        listed_.push_back(id);
+    }
+    paths_.resize(listed_.size());
+    schedule.for_each_range(listed_.size(), kImpactGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
-            candidates_[i].time = look_at(simulation, step, candidates_[i], 0, scratch);
+            paths_[i].emplace(simulation, step, listed_[i]);
     });
 }
+
+void FastBodies::find_impacts(Schedule& schedule) {
+    const std::size_t ranges = candidates_.size() / kImpactGrain + 1;
+    if (searches_.size() < ranges) searches_.resize(ranges);
+    for (ImpactSearch& search : searches_) search = {std::move(search.contacts), 0, 0};
+    const auto for_each = [&](const auto& work) {
+        schedule.for_each_range(candidates_.size(), kImpactGrain, [&](Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i)
+                work(candidates_[i], searches_[range.begin / kImpactGrain]);
+        });
+    };
+    for_each([&](Candidate& candidate, ImpactSearch& search) {
+        candidate.time = impact_time(path_of(candidate.a), path_of(candidate.b), 0, search);
+    });
+    const auto open = static_cast<std::size_t>(
+        std::count_if(candidates_.begin(), candidates_.end(),
+                      [](const Candidate& candidate) { return candidate.time != kNoImpact; }));
+    if (open == 0) return;
+    // Most searches take less than a fourth of what they may.
+    const std::size_t most =
+        4 * open > most_gaps() ? 0 : std::min(most_gaps() / open, kMostAdvances);
+    for_each([&](Candidate& candidate, ImpactSearch& search) {
+        if (candidate.time == kNoImpact) return;
+        search.most = most;
+        candidate.time = impact_time(path_of(candidate.a), path_of(candidate.b), 0, search);
+    });
+}
+
+std::size_t FastBodies::most_gaps() const { return kGapsOfAll + kGapsOfBody * is_fast_.size(); }
 
 /// With all that joints connect with it: else its joints would be torn apart.
 void FastBodies::stop_at(const Simulation& simulation, const StepData& step, BodyId id,
@@ -99,12 +161,9 @@ void FastBodies::stop_at(const Simulation& simulation, const StepData& step, Bod
     for (const BodyId other : simulation.joints.connected_with(id)) stop(other);
 }
 
-double FastBodies::look_at(const Simulation& simulation, const StepData& step,
-                           const Candidate& candidate, double from,
-                           std::vector<Contact>& scratch) const {
-    FreePath a(simulation, step, candidate.a), b(simulation, step, candidate.b);
-    if (!stop_.empty()) a.stop(stop_[candidate.a]), b.stop(stop_[candidate.b]);
-    return impact_time(a, b, from, scratch);
+/// What is known to pass through nothing until a time stops there.
+void FastBodies::stop_all(const Simulation& simulation, const StepData& step, double time) {
+    for (const BodyId id : listed_) stop_at(simulation, step, id, time);
 }
 
 void FastBodies::list_impacts() {
@@ -112,18 +171,26 @@ void FastBodies::list_impacts() {
     for (std::uint32_t i = 0; i < candidates_.size(); ++i)
         if (candidates_[i].time != kNoImpact) fast_bodies_.push_back({candidates_[i].time, i});
     if (fast_bodies_.empty()) return;
-    met_.clear();
-    for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
-        met_.push_back({candidates_[i].a, i});
-        met_.push_back({candidates_[i].b, i});
-    }
-    std::sort(met_.begin(), met_.end());
+    first_met_.assign(listed_.size() + 2, 0);
+    const auto for_each_met = [&](const auto& visit) {
+        for (std::uint32_t i = 0; i < candidates_.size(); ++i) {
+            visit(place_[candidates_[i].a], i);
+            visit(place_[candidates_[i].b], i);
+        }
+    };
+    for_each_met([&](std::uint32_t place, std::uint32_t) { ++first_met_[place + 2]; });
+    std::partial_sum(first_met_.begin(), first_met_.end(), first_met_.begin());
+    met_.resize(2 * candidates_.size());
+    for_each_met([&](std::uint32_t place, std::uint32_t i) { met_[first_met_[place + 1]++] = i; });
 }
 
 void FastBodies::take_impacts(const Simulation& simulation, const StepData& step) {
     const auto later = [](const Impact& i, const Impact& j) {
         return std::tie(i.time, i.candidate) > std::tie(j.time, j.candidate);
     };
+    ImpactSearch& search = searches_[0];
+    std::size_t looks = kLooksOfGap * most_gaps();
+    const std::size_t most = search.gaps + most_gaps();
     std::make_heap(fast_bodies_.begin(), fast_bodies_.end(), later);
     while (!fast_bodies_.empty()) {
         std::pop_heap(fast_bodies_.begin(), fast_bodies_.end(), later);
@@ -135,15 +202,20 @@ void FastBodies::take_impacts(const Simulation& simulation, const StepData& step
         const std::size_t first = stopped_.size();
         for (const BodyId id : {candidate.a, candidate.b})
             stop_at(simulation, step, id, impact.time);
+        if (looks == 0 || search.gaps >= most) return stop_all(simulation, step, impact.time);
+        for (std::size_t i = first; i < stopped_.size(); ++i)
+            if (place_[stopped_[i]] != kUnlisted) path_of(stopped_[i]).stop(impact.time);
         for (std::size_t i = first; i < stopped_.size(); ++i) {
-            const BodyId id = stopped_[i];
-            auto met = std::lower_bound(met_.begin(), met_.end(), std::pair(id, std::uint32_t{0}));
-            for (; met != met_.end() && met->first == id; ++met) {
-                if (met->second == impact.candidate) continue;
-                Candidate& other = candidates_[met->second];
-                other.time = look_at(simulation, step, other, impact.time, scratch_[0]);
+            const std::uint32_t place = place_[stopped_[i]];
+            if (place == kUnlisted) continue;
+            for (std::uint32_t met = first_met_[place]; met < first_met_[place + 1]; ++met) {
+                if (met_[met] == impact.candidate) continue;
+                looks -= looks > 0 ? 1 : 0;
+                Candidate& other = candidates_[met_[met]];
+                search.most = std::min(kMostAdvances, most - std::min(most, search.gaps));
+                other.time = impact_time(path_of(other.a), path_of(other.b), impact.time, search);
                 if (other.time == kNoImpact) continue;
-                fast_bodies_.push_back({other.time, met->second});
+                fast_bodies_.push_back({other.time, met_[met]});
                 std::push_heap(fast_bodies_.begin(), fast_bodies_.end(), later);
             }
         }

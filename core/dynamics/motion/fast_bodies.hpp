@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/dynamics/contacts/chunked_list.hpp"
+#include "core/dynamics/motion/free_path.hpp"
 #include "core/dynamics/step/schedule.hpp"
 
 namespace tesserae {
@@ -17,6 +19,9 @@ namespace tesserae {
 /// A pair that would pass is stopped where it first touches; both bodies lose the rest of the half.
 /// A stopped body may get in the way of others or no longer reach them. So impacts are taken in the
 /// order of their times, and the pairs of a stopped body are looked at again.
+///
+/// What this costs is bounded: where so many bodies are so fast that it would take many steps'
+/// time, they are stopped at times until which they surely do not touch.
 class FastBodies {
   public:
     enum class Half { kFirst, kSecond };
@@ -25,6 +30,9 @@ class FastBodies {
     /// changed by the work of gravity on the way that is lost.
     /// @param step   as after the half; step.pairs are all bodies that meet in it
     void stop(const Simulation& simulation, StepData& step, Schedule& schedule, Half half);
+
+    /// Returns of how many poses of two bodies the last call has found the gap.
+    std::size_t gaps() const;
 
   private:
     /// Two bodies of which one is fast.
@@ -38,19 +46,26 @@ class FastBodies {
     };
 
     void find_candidates(const Simulation& simulation, const StepData& step, Schedule& schedule);
+    void find_paths(const Simulation& simulation, const StepData& step, Schedule& schedule);
+    void find_impacts(Schedule& schedule);
     void list_impacts();
     void take_impacts(const Simulation& simulation, const StepData& step);
     void stop_at(const Simulation& simulation, const StepData& step, BodyId id, double time);
-    double look_at(const Simulation& simulation, const StepData& step, const Candidate& candidate,
-                   double from, std::vector<Contact>& scratch) const;
+    void stop_all(const Simulation& simulation, const StepData& step, double time);
+    std::size_t most_gaps() const;
+    FreePath& path_of(BodyId id) { return *paths_[place_[id]]; }
 
-    std::vector<std::uint8_t> is_fast_;  ///< of every body
-    std::vector<double> stop_;           ///< time at which every body stops [s], or kNoImpact
-    std::vector<std::vector<Contact>> scratch_;  ///< one for every range of pairs
+    std::vector<std::uint8_t> is_fast_;   ///< of every body
+    std::vector<double> stop_;            ///< time at which every body stops [s], or kNoImpact
+    std::vector<ImpactSearch> searches_;  ///< one for every range of pairs
     ChunkedList<Candidate> lists_;
-    std::vector<Candidate> candidates_;                  ///< ascending (a, b)
-    std::vector<std::pair<BodyId, std::uint32_t>> met_;  ///< each body's candidates, ascending
-    std::vector<Impact> fast_bodies_;                    ///< a heap, the next first
+    std::vector<Candidate> candidates_;           ///< ascending (a, b)
+    std::vector<BodyId> listed_;                  ///< bodies of candidates, ascending
+    std::vector<std::uint32_t> place_;            ///< of every body, in listed_
+    std::vector<std::optional<FreePath>> paths_;  ///< of each of listed_
+    std::vector<std::uint32_t> met_;        ///< candidates of each of listed_ in turn, ascending
+    std::vector<std::uint32_t> first_met_;  ///< in met_, of each of listed_, and the end
+    std::vector<Impact> fast_bodies_;       ///< a heap, the next first
     std::vector<BodyId> stopped_;
 };
 

@@ -10,12 +10,15 @@
 namespace tesserae {
 namespace {
 
-/// Advances of one search at most; a rod of 1 m by 1 mm that whirls beside a wall takes some 50.
-constexpr int kAdvances = 1000;
+/// The angle between waypoints of a body that turns by more in a half [rad].
+constexpr double kBetweenWaypoints = 2;
 
 /// Bodies that overlap by more than this part of what is left to the solver may come deeper by the
 /// rest of it. More, and what whirls stops where it is; less, and it sinks in.
 constexpr double kDeeper = 0.875;
+
+/// More than rounding adds to places along a path, as a part of its length.
+constexpr double kFarRounding = 1e-14;
 
 /// How far two paths may come together.
 struct GapBounds {
@@ -36,9 +39,14 @@ struct Side {
     Mat4 rotation;
     const FreePath& path;
     bool moves;
+    double turns_for;  ///< [s]
 
     Side(const FreePath& body, double time)
-        : now(body.at(time)), rotation(to_matrix(now.rotor)), path(body), moves(body.moves(time)) {}
+        : now(body.at(time)),
+          rotation(to_matrix(now.rotor)),
+          path(body),
+          moves(body.moves(time)),
+          turns_for(body.turns_for(time)) {}
 
     double extent_along(const Vec4& direction) const {
         const Vec4 local = rotation.transpose() * direction;
@@ -50,8 +58,10 @@ struct Side {
         return direction.dot(now.position) + extent_along(direction);
     }
     Vec4 velocity() const { return moves ? path.velocity() : Vec4(Vec4::Zero()); }
-    double spin() const { return moves ? path.spin() : 0; }
-    double swing() const { return moves ? path.swing() : 0; }
+    double spin() const { return turns_for > 0 ? path.spin() : 0; }
+    double swing() const { return turns_for > 0 ? path.swing() : 0; }
+    /// How far turning moves a point of it within a time, at most [m].
+    double swept(double time) const { return std::min(time, turns_for) * path.spin(); }
     /// The largest speed along the direction that turning gives a point of it now [m/s].
     double spin_along(const Vec4& direction) const {
         if (spin() == 0) return 0;
@@ -80,12 +90,14 @@ struct Gap {
     }
 };
 
-Gap gap_at(const FreePath& a, const FreePath& b, double time, double margin,
-           std::vector<Contact>& scratch) {
+Gap gap_at(const FreePath& a, const FreePath& b, double time, double margin, ImpactSearch& search) {
+    ++search.gaps;
+    std::vector<Contact>& scratch = search.contacts;
     const Side first(a, time), second(b, time);
     const Vec4 relative = first.velocity() - second.velocity();
     const double turning = first.spin() + second.spin();
-    const double way = (a.duration() - time) * (relative.norm() + turning);
+    const double left = a.duration() - time;
+    const double way = left * relative.norm() + first.swept(left) + second.swept(left);
     scratch.clear();
     find_contacts(a.id(), a.shape(), {first.now.position, first.now.rotor}, b.id(), b.shape(),
                   {second.now.position, second.now.rotor}, way + margin, scratch);
@@ -103,6 +115,20 @@ Gap gap_at(const FreePath& a, const FreePath& b, double time, double margin,
     return gap;
 }
 
+/// Whether the balls about two bodies touch from a time on.
+/// @param relative   velocity of a against b, which stays
+bool do_balls_meet(const FreePath& a, const FreePath& b, const Vec4& relative, double from,
+                   double touch) {
+    const double both = a.radius() + b.radius();
+    if (!(both < kNoImpact)) return true;
+    const Vec4 x = a.position_at(from), y = b.position_at(from), now = x - y;
+    const double left = a.duration() - from, squared = relative.squaredNorm();
+    const double nearest = squared > 0 ? std::clamp(-now.dot(relative) / squared, 0.0, left) : 0;
+    // Positions far away are rounded.
+    const double slack = touch + kFarRounding * (x.norm() + y.norm() + left * relative.norm());
+    return !((now + nearest * relative).norm() > both + slack);
+}
+
 }  // namespace
 
 FreePath::FreePath(const Simulation& simulation, const StepData& step, BodyId id)
@@ -115,9 +141,25 @@ FreePath::FreePath(const Simulation& simulation, const StepData& step, BodyId id
       start_{step.position[id] - duration_ * velocity_, step.rotor[id], {}} {
     if (!type_->bounded || !simulation.needs.turning) return;
     Bivector reversed = -step.angular_velocity[id];
-    turn_freely(*type_, integrator_, duration_, start_.rotor, reversed);
+    const double turns_for = turning_time(reversed, duration_);
+    if (turns_for < duration_) turning_ = turns_for;
+    turn_on(*type_, integrator_, turns_for, start_.rotor, reversed);
     start_.angular_velocity = -reversed;
     bound_turning();
+    put_waypoints();
+}
+
+/// Else the way to each later time would be longer than to the one before.
+void FreePath::put_waypoints() {
+    const Bivector& omega = start_.angular_velocity;
+    const double turns_for = std::min(duration_, turning_), speed = norm(omega);
+    if (!(turns_for * speed > kBetweenWaypoints)) return;
+    between_ = kBetweenWaypoints / speed;
+    State state = start_;
+    for (double time = between_; time < turns_for; time += between_) {
+        turn_on(*type_, integrator_, between_, state.rotor, state.angular_velocity);
+        waypoints_.push_back(state);
+    }
 }
 
 /// Where the angular velocity wanders, its energy bounds each of its components along principal
@@ -150,44 +192,52 @@ void FreePath::bound_turning() {
 }
 
 FreePath::State FreePath::at(double time) const {
-    State state = start_;
-    const double moved = std::min(time, stop_);
-    state.position += moved * velocity_;
-    turn_freely(*type_, integrator_, moved, state.rotor, state.angular_velocity);
+    const double turned = std::min({time, stop_, turning_});
+    const auto passed = std::min(static_cast<std::size_t>(turned / between_), waypoints_.size());
+    State state = passed > 0 ? waypoints_[passed - 1] : start_;
+    state.position = position_at(time);
+    const double since = passed > 0 ? turned - static_cast<double>(passed) * between_ : turned;
+    turn_on(*type_, integrator_, since, state.rotor, state.angular_velocity);
     return state;
 }
 
-double impact_time(const FreePath& a, const FreePath& b, double from,
-                   std::vector<Contact>& scratch) {
+bool may_pass(const FreePath& a, const FreePath& b, double from) {
     const GapBounds bounds(a, b);
-    const double end = a.duration();
     const auto is_moving = [&](const FreePath& path) { return path.moves(from); };
-    if (!is_moving(a) && !is_moving(b)) return kNoImpact;
+    if (!is_moving(a) && !is_moving(b)) return false;
     const Vec4 relative = (is_moving(a) ? a.velocity() : Vec4(Vec4::Zero())) -
                           (is_moving(b) ? b.velocity() : Vec4(Vec4::Zero()));
     const double speed =
         relative.norm() + (is_moving(a) ? a.spin() : 0) + (is_moving(b) ? b.spin() : 0);
-    if (!((end - from) * speed > bounds.deepest)) return kNoImpact;
+    if (!((a.duration() - from) * speed > bounds.deepest)) return false;
+    return do_balls_meet(a, b, relative, from, bounds.touch);
+}
+
+double impact_time(const FreePath& a, const FreePath& b, double from, ImpactSearch& search) {
+    if (!may_pass(a, b, from)) return kNoImpact;
+    if (search.most == 0) return from;
+    const GapBounds bounds(a, b);
+    const double end = a.duration();
 
     // Would they overlap too much, and when were they surely not yet touching?
-    Gap gap = gap_at(a, b, from, bounds.touch, scratch);
+    Gap gap = gap_at(a, b, from, bounds.touch, search);
     if (gap.value == kNoImpact) return kNoImpact;
     const double touching = gap.value > bounds.touch ? bounds.touch : gap.value - bounds.touch;
     const double deep = std::min(0.0, gap.value + kDeeper * bounds.deepest) - bounds.deepest;
     double time = from, clear = from;
-    for (int i = 0; i < kAdvances && gap.value > deep + bounds.touch; ++i) {
+    for (std::size_t i = 0; i < search.most && gap.value > deep + bounds.touch; ++i) {
         if (gap.value > touching) clear = time;
         time += gap.time_to(deep);
         if (!(time < end)) return kNoImpact;
-        gap = gap_at(a, b, time, bounds.touch, scratch);
+        gap = gap_at(a, b, time, bounds.touch, search);
         if (gap.value == kNoImpact) return kNoImpact;
     }
 
     // Then where they first touch.
     const double too_late = time;
     time = clear;
-    for (int i = 0; i < kAdvances; ++i) {
-        gap = gap_at(a, b, time, bounds.touch, scratch);
+    for (std::size_t i = 0; i < search.most; ++i) {
+        gap = gap_at(a, b, time, bounds.touch, search);
         if (gap.value <= touching) break;
         time += gap.time_to(touching - 0.5 * bounds.touch);
         if (!(time < too_late)) return clear;

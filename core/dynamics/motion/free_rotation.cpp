@@ -15,8 +15,8 @@ namespace {
 /// Angle [rad] that one application of the midpoint rule turns at most; more is done in pieces.
 /// Larger ones converge slowly, and the orientation's error is a sixth of the angle's square.
 constexpr double kLargestAngle = 0.5;
-/// Pieces of a turn at most; beyond, at angular velocities that no step resolves, only the angular
-/// momentum stays.
+/// Pieces of a turn at most. A turn by kMostTurn has a fourth of them, but a body's angular
+/// velocity may grow while it turns.
 constexpr double kMostPieces = 1000;
 
 /// The rotor after turning at a constant world angular velocity for a time h.
@@ -280,8 +280,17 @@ void turn_freely(const FreeBody& a, const FreeBody& b, RotationIntegrator integr
     turn_freely(b.type, integrator, h, b.rotor, b.omega);
 }
 
+double turning_time(const Bivector& omega, double h) {
+    return h * h * dot(omega, omega) <= kMostTurn * kMostTurn ? h : kMostTurn / norm(omega);
+}
+
 void turn_freely(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
                  Bivector& omega) {
+    turn_on(type, integrator, turning_time(omega, h), rotor, omega);
+}
+
+void turn_on(const TypeProperties& type, RotationIntegrator integrator, double h, Rotor& rotor,
+             Bivector& omega) {
     if (omega == Bivector{}) return;
     if (type.isotropic) {
         turn_evenly(h, rotor, omega);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/dynamics/motion/fast_bodies.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,6 +8,7 @@
 #include <cstdlib>
 
 #include "core/contact/find_contacts.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/motion/free_path.hpp"
 #include "core/dynamics/motion/motion.hpp"
@@ -280,7 +283,7 @@ double separation_at(const HalfStep& half, double time) {
 TEST(ImpactTime, OfSpheresIsThatOfTheClosedForm) {
     std::mt19937_64 random(5);
     int stopped = 0, passed = 0;
-    std::vector<Contact> scratch;
+    ImpactSearch scratch;
     for (int i = 0; i < 3000; ++i) {
         const double r = spread(random, 0.01, 1), s = spread(random, 0.01, 1), sum = r + s;
         const double both = 2 * std::min(r, s);
@@ -316,7 +319,7 @@ TEST(ImpactTime, OfSpheresIsThatOfTheClosedForm) {
 TEST(ImpactTime, OfTurningBodiesIsThatOfFineSampling) {
     std::mt19937_64 random(6);
     int stopped = 0, passed = 0;
-    std::vector<Contact> scratch;
+    ImpactSearch scratch;
     for (int i = 0; i < 200; ++i) {
         Bodies bodies;
         const double h = 0.01;
@@ -350,6 +353,69 @@ TEST(ImpactTime, OfTurningBodiesIsThatOfFineSampling) {
     }
     EXPECT_GT(stopped, 25);
     EXPECT_GT(passed, 25);
+}
+
+/// Boxes, capsules and balls on a lattice, side by side.
+Bodies fast_heap(int side, double speed, double spin) {
+    std::mt19937_64 random(7);
+    Bodies bodies;
+    const BodyType types[] = {box_type({0.5, 0.4, 0.45, 0.5}), capsule_type(0.1, 0.2),
+                              sphere_type(0.25)};
+    for (int i = 0; i < side * side * side * side; ++i) {
+        const Vec4 place(i % side, i / side % side, i / side / side % side, i / side / side / side);
+        const Bivector turn = random_plane(random, 1);
+        add(bodies, types[i % 3], 0.75 * (place - Vec4::Constant(0.5 * (side - 1))),
+            speed * random_vector(random, 1).normalized(), (spin / norm(turn)) * turn);
+    }
+    return bodies;
+}
+
+/// A search that had to be sure would take millions, as each may have to be made again wherever a
+/// body has been stopped.
+TEST(FastBodies, FindFewGapsHoweverFastABodyOrAWholeHeap) {
+    for (const double speed : {1.0, 1e3, 1e5, 1e7, 1e9, 1e12})
+        for (const double spin : {0.0, 1e3, 1e5, 1e8, 1e10})
+            for (const bool all : {false, true}) {
+                Bodies bodies = fast_heap(4, all ? speed : 0, all ? spin : 0);
+                if (!all) {
+                    bodies.velocity[0] = speed * Vec4::Ones();
+                    bodies.angular_velocity[0].xy = bodies.angular_velocity[0].zw = spin;
+                }
+                HalfStep half(bodies, without_gravity(), kStep);
+                update_bounds(half.simulation, half.step, {0, bodies.size()});
+                test_all_pairs(half.simulation, half.step);
+                Schedule schedule;
+                FastBodies fast_bodies;
+                fast_bodies.stop(half.simulation, half.step, schedule, FastBodies::Half::kFirst);
+                EXPECT_LT(fast_bodies.gaps(), 150 * bodies.size()) << speed << ' ' << spin;
+            }
+}
+
+/// In a room of walls of 0.5 m, from 1 mm to 1 m large.
+TEST(Throw, OfAHeapInARoomStaysInItHoweverFast) {
+    for (const double speed : {1e3, 1e6, 1e9, 1e12})
+        for (const double spin : {0.0, 1e4, 1e8, 1e10}) {
+            Bodies bodies = fast_heap(2, speed, spin);
+            const auto count = static_cast<BodyId>(bodies.size());
+            add(bodies, sphere_type(5e-4), {0, 0, 0, 0.4}, Vec4(speed, 0, speed, 0));
+            add(bodies, box_type(Vec4::Constant(1e-3)), {0, 0, 0.1, 0.4}, Vec4(0, speed, 0, 0),
+                {spin, 0, spin, 0, 0, 0});
+            for (int axis = 0; axis < 4; ++axis)
+                for (const double side : {-1.5, 1.5}) {
+                    Vec4 sides = Vec4::Constant(4);
+                    sides[axis] = 0.5;
+                    BodyType wall = box_type(sides);
+                    wall.fixed_position = wall.fixed_rotation = true;
+                    add(bodies, wall, side * Vec4::Unit(axis));
+                }
+            Stepper world(bodies, without_gravity());
+            for (int i = 0; i < 24; ++i) {
+                world.step(kStep);
+                for (BodyId id = 0; id < count + 2; ++id)
+                    ASSERT_LT(world.bodies().position[id].cwiseAbs().maxCoeff(), 1.25)
+                        << speed << ' ' << spin << ", step " << i << ", body " << id;
+            }
+        }
 }
 
 }  // namespace
