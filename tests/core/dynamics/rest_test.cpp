@@ -51,9 +51,9 @@ TEST(Sweeps, AreSoManyAtLeastUnlessHardlyAnythingIsLeft) {
     const auto count = [](double enough) {
         return sweeps_of(Pass::kSolve, {.sweeps = 100, .enough = enough, .least = 8}).size();
     };
-    EXPECT_EQ(count(0.06), 8u);     // 1/16 is left after five
-    EXPECT_EQ(count(0x1p-9), 10u);  // after ten
-    EXPECT_EQ(count(0.16), 7u);     // 1/64, hardly anything of it
+    EXPECT_EQ(count(0.06), 8u);                             // 1/16 is left after five
+    EXPECT_EQ(count(0x1p-9), 10u);                          // after ten
+    EXPECT_EQ(count(1.01 * 0x1p-6 / kHardlyAnything), 7u);  // 1/64, hardly anything of it
     EXPECT_EQ(count(1 / kHardlyAnything), 1u);
     EXPECT_EQ(count(0.25 / kHardlyAnything), 3u);
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/step/stage_copy.hpp"
 #include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
@@ -79,6 +80,42 @@ TEST(ColouredRows, MakesRowsOnceForAImpactAndTheLoadAfterIt) {
             for (std::size_t i = 0; i < once.step.impulses.size(); ++i)
                 ASSERT_EQ(once.step.impulses[i].normal, anew.step.impulses[i].normal);
         }
+}
+
+/// One thread that counts the pieces of sweeps which it is given.
+struct CountingThread : OneThread {
+    int* pieces;
+
+    template <class Work>
+    double largest(BatchRange batches, std::size_t points, const Work& work) const {
+        ++*pieces;
+        return OneThread::largest(batches, points, work);
+    }
+};
+
+/// The sweeps over the load of a tower of ten boxes, after so many steps and then a push [m/s].
+int sweeps_of_tower(int steps, double push) {
+    Bodies bodies;
+    add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+    BodyType box = box_type({1, 1, 1, 1});
+    box.friction = 0.5;
+    for (int i = 0; i < 10; ++i) add(bodies, box, {0, i + 0.5, 0, 0});
+    Stepper world(bodies, PhysicsSettings{});
+    for (int i = 0; i < steps; ++i) world.step(kStep);
+    StageCopy before(Stage::kSolveIslands);
+    world.observe(&before);
+    world.step(kStep);
+    StepData& step = before.step;
+    step.velocity[5][0] += push;
+    int pieces = 0;
+    solve_coloured_island(before.simulation, step, 0, CountingThread{{}, &pieces});
+    const auto colours = static_cast<int>(step.coloured.first_colour[1]);
+    return pieces / (3 * (colours - 1));  // the last colour is done without it
+}
+
+TEST(ColouredRows, TakeFewerSweepsOverWhatIsAtRest) {
+    EXPECT_LT(sweeps_of_tower(240, 0), kLeastSweeps);
+    EXPECT_GE(sweeps_of_tower(240, 1e-4), kLeastSweeps);
 }
 
 /// The largest difference of the velocities of two worlds [m/s; rad/s].
