@@ -5,7 +5,9 @@
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/constants.hpp"
+#include "core/dynamics/contacts/pairs.hpp"
 #include "core/dynamics/contacts/rims.hpp"
+#include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/step/room.hpp"
 #include "core/error.hpp"
 
@@ -36,6 +38,20 @@ bool do_balls_meet(const Simulation& simulation, const StepData& step, const Bod
     return meet(v_b - v_a) || meet(v_b) || meet(-v_a);
 }
 
+/// Whether two bodies can touch within the sub-step, by where the balls about them can get.
+bool may_touch(const Simulation& simulation, const StepData& step, const BodyPair& pair) {
+    const auto bounds = [&](BodyId id) {
+        return Bounds{step.position[id], reach(simulation, step, id, step.h)};
+    };
+    const auto& [a, b] = pair;
+    if (!simulation.type_of(a).bounded)
+        return reaches(bounds(b), simulation.bodies.type_of(a).shape);
+    if (!simulation.type_of(b).bounded)
+        return reaches(bounds(a), simulation.bodies.type_of(b).shape);
+    const Bounds of_a = bounds(a), of_b = bounds(b);
+    return !((of_b.centre - of_a.centre).norm() > of_a.radius + of_b.radius);
+}
+
 }  // namespace
 
 Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b) {
@@ -48,6 +64,7 @@ Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a,
     if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
     speed += std::abs(type_b.gravity_scale - type_a.gravity_scale) * step.kick;
     const double slop = std::min(type_a.slop, type_b.slop), margin = slop + step.h * speed;
+    if (!may_touch(simulation, step, {a, b})) return {slop, slop};
     if (step.pairs.size() > kMostPairs * step.position.size() &&
         !do_balls_meet(simulation, step, {a, b}))
         return {slop, slop};

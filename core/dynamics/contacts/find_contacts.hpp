@@ -14,6 +14,8 @@ struct Margins {
     /// bodies that fall one above the other would sink into each other as the lower one lands.
     double if_one_stops;
 };
+/// Returns the slop for bodies that cannot touch within the sub-step: what is found must not depend
+/// on which other pairs step.pairs has from an earlier sub-step.
 Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a, BodyId b);
 
 /// Does the narrow phase of a pair at the bodies' present poses and appends its contacts to a list.

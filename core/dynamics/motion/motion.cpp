@@ -39,14 +39,6 @@ void for_twos(Range bodies, const Visit& visit) {
         visit(Range{i, std::min(i + 2, bodies.end)});
 }
 
-/// How far from where it is a body's surface can get within a time.
-double reach(const Simulation& simulation, const StepData& step, BodyId id, double time) {
-    const TypeProperties& type = simulation.type_of(id);
-    double speed = step.velocity[id].norm();
-    speed += time * std::abs(type.gravity_scale) * simulation.settings.gravity.norm();
-    return type.radius + type.slop + time * speed;
-}
-
 }  // namespace
 
 bool advance_first_half(const Simulation& simulation, StepData& step, Range bodies) {
@@ -113,6 +105,13 @@ void damp_half(const Simulation& simulation, StepData& step, Range bodies) {
             step.angular_velocity[i] =
                 std::exp(-0.5 * step.h * type.angular_damping) * step.angular_velocity[i];
     }
+}
+
+double reach(const Simulation& simulation, const StepData& step, BodyId id, double time) {
+    const TypeProperties& type = simulation.type_of(id);
+    double speed = step.velocity[id].norm();
+    speed += time * std::abs(type.gravity_scale) * simulation.settings.gravity.norm();
+    return type.radius + type.slop + time * speed;
 }
 
 void update_bounds(const Simulation& simulation, StepData& step, Range bodies) {

@@ -26,6 +26,10 @@ void integrate_velocities(const Simulation& simulation, StepData& step, Range bo
 /// not: what rests has no velocity there, and its load is its whole weight.
 void damp_half(const Simulation& simulation, StepData& step, Range bodies);
 
+/// Returns how far from a body's centre its surface can get within a time, and its slop farther
+/// [m].
+double reach(const Simulation& simulation, const StepData& step, BodyId id, double time);
+
 /// Writes step.bounds: each encloses where a body is in the middle of the sub-step and where its
 /// velocity and gravity take it until the first middle of the next step. A contact is then seen
 /// before bodies can pass through each other.
