@@ -25,8 +25,8 @@ std::string fault_of_numbering(const SmallScene& scene, const Change& defect = {
 std::string fault_of_momentum(const SmallScene& scene, const Change& defect = {});
 
 /// Turned and moved scenes, and mirror images, move alike: they are no farther apart than scenes
-/// that are rounded otherwise, as long as these are not, as is_gentle() ones are for some steps.
-/// Bodies are turned a little first, as ties between directions are rounding's.
+/// that are rounded otherwise from the start on, as long as these are not, as is_gentle() ones are
+/// for some steps. Bodies are turned a little first, as ties between directions are rounding's.
 std::string fault_of_turning(const SmallScene& scene, const Change& defect = {});
 std::string fault_of_mirroring(const SmallScene& scene, const Change& defect = {});
 
@@ -56,8 +56,9 @@ struct Agreement {
         0;  ///< the same between the scene and others of it that are rounded otherwise
 };
 /// Compares them step by step, as long as they are gentle.
-/// @param ends   is asked after every step whether to go on
+/// @param ends          is asked after every step whether to end
+/// @param others_count  how many others there are
 Agreement agreement_of(const SmallScene& scene, const View& view, const Change& defect,
-                       const std::function<bool(const Agreement&)>& ends);
+                       const std::function<bool(const Agreement&)>& ends, int others_count);
 
 }  // namespace tesserae::scenes::properties

@@ -123,6 +123,12 @@ TEST(Properties, HoldOfAFewScenes) {
     expect_of_all(properties::fault_of_mirroring, kFew);
 }
 
+/// Scenes that did not have them: bodies far off decided which contacts others had.
+TEST(Properties, HoldWhereTheyWereOnceFoundNotTo) {
+    for (const std::uint64_t seed : {1271, 3144, 6309, 8058})
+        expect_of_all(properties::fault_of_numbering, {seed, 1});
+}
+
 TEST(LengthsSlow, ScaleBitForBit) { expect_of_all(kLengths, kMany); }
 TEST(MassesSlow, ScaleBitForBit) { expect_of_all(kMasses, kMany); }
 TEST(TimesSlow, ScaleBitForBit) { expect_of_all(properties::fault_of_slowing, kMany); }
@@ -131,11 +137,10 @@ TEST(NumberingSlow, ChangesNoBit) { expect_of_all(properties::fault_of_numbering
 TEST(MomentumSlow, ComesFromGravityAndWhatIsHeld) {
     expect_of_all(properties::fault_of_momentum, kMany);
 }
-/// Stacks of which one in 2000 or 1000 parts by 8e-4 or 6e-6 of its size in its first step.
-TEST(TurningSlow, ChangesNothing) { expect_of_all(properties::fault_of_turning, kMany, {1057}); }
-TEST(MirroringSlow, ChangesNothing) {
-    expect_of_all(properties::fault_of_mirroring, kMany, {1057, 2443});
-}
+/// One does not converge in its sweeps, and parts by 4e-6 m/s where its residual is 3e-4 m/s: the
+/// masses of friction are kept to eight bits, in frames that depend on the axes.
+TEST(TurningSlow, ChangesNothing) { expect_of_all(properties::fault_of_turning, kMany, {2548}); }
+TEST(MirroringSlow, ChangesNothing) { expect_of_all(properties::fault_of_mirroring, kMany); }
 
 /// Some of the first scenes has a fault where the motion has a defect of a part in 10^3, or in
 /// bits.
