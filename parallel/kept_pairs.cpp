@@ -18,18 +18,21 @@ constexpr std::size_t kBallGrain = 512, kCandidateGrain = 2048;
 /// and for ever once it rests.
 constexpr double kPart = 0.1, kSteps = 16;
 
+/// Pairs of bodies that moved are searched alone if these are at most one of so many.
+constexpr std::size_t kFew = 2;
+
 /// Bodies with more candidates each than this are crowded: most of the memory is that of contacts.
 constexpr std::size_t kCrowded = 2;
 
 }  // namespace
 
 void KeptPairs::refresh(const Simulation& simulation, StepData& step) {
-    if (!holds(step)) {
-        // Where bodies are crowded searches are rare, and share memory with the rows.
-        const auto crowded = [&] { return candidates_.size() > kCrowded * large_.size(); };
-        if (crowded() && !step.rows_in_use) release_rows(step);
-        search(simulation, step);
-        if (crowded()) sort_and_sweep_.release();
+    const std::size_t moved = held_ ? list_moved(step) : 0;
+    lasted_ = std::min(lasted_ + 1, kRare);
+    if (!held_ || moved > 0) {
+        const bool few = held_ && kFew * moved <= large_.size();
+        if (!few || !search_for_some(simulation, step)) search(simulation, step);
+        lasted_ = 0;
     }
     choose_pairs(simulation, step);
 }
@@ -45,30 +48,49 @@ void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
         step.pairs);
 }
 
-bool KeptPairs::holds(const StepData& step) const {
-    return held_ && !any_range(large_.size(), kBallGrain, [&](Range range) {
-               for (std::size_t i = range.begin; i < range.end; ++i) {
-                   const Bounds &now = step.bounds[i], &large = large_[i];
-                   if (!((now.centre - large.centre).norm() + now.radius <= large.radius))
-                       return true;
-               }
-               return false;
-           });
-}
-
-void KeptPairs::search(const Simulation& simulation, const StepData& step) {
-    held_ = false;  // so it stays if the search fails for want of memory
-    large_.resize(step.bounds.size());
+/// @return how many bodies have left their larger balls
+std::size_t KeptPairs::list_moved(const StepData& step) {
+    moved_.resize(large_.size());
     for_each_range(large_.size(), kBallGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            const TypeProperties& type = simulation.type_of(static_cast<BodyId>(i));
-            large_[i] = step.bounds[i];
-            if (!type.bounded) continue;
-            const double way = kSteps * step.dt * step.velocity[i].norm();
-            large_[i].radius += std::min(kPart * type.radius + way, type.radius);
+            const Bounds &now = step.bounds[i], &large = large_[i];
+            moved_[i] = !((now.centre - large.centre).norm() + now.radius <= large.radius);
         }
     });
+    return static_cast<std::size_t>(std::count(moved_.begin(), moved_.end(), 1));
+}
+
+void KeptPairs::enlarge(const Simulation& simulation, const StepData& step, std::size_t body) {
+    const TypeProperties& type = simulation.type_of(static_cast<BodyId>(body));
+    large_[body] = step.bounds[body];
+    if (!type.bounded) return;
+    const double way = kSteps * step.dt * step.velocity[body].norm();
+    large_[body].radius += std::min(kPart * type.radius + way, type.radius);
+}
+
+bool KeptPairs::search_for_some(const Simulation& simulation, const StepData& step) {
+    held_ = false;  // so it stays if the search fails for want of memory
+    for (std::size_t i = 0; i < large_.size(); ++i)
+        if (moved_[i]) enlarge(simulation, step, i);
+    if (!sort_and_sweep_.replace_pairs_of(moved_, simulation, large_, candidates_)) return false;
+    held_ = true;
+    ++searches_for_some_;
+    return true;
+}
+
+void KeptPairs::search(const Simulation& simulation, StepData& step) {
+    held_ = false;
+    // Where bodies are crowded and searches are rare these share memory with the rows.
+    const auto shares = [&] {
+        return lasted_ == kRare && candidates_.size() > kCrowded * large_.size();
+    };
+    if (shares() && !step.rows_in_use) release_rows(step);
+    large_.resize(step.bounds.size());
+    for_each_range(large_.size(), kBallGrain, [&](Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) enlarge(simulation, step, i);
+    });
     sort_and_sweep_.overlapping_pairs(simulation, large_, candidates_);
+    if (shares()) sort_and_sweep_.release();
     held_ = true;
     ++searches_;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <tuple>
 
@@ -16,7 +17,7 @@ namespace tesserae::parallel {
 namespace {
 
 /// Bodies of one task: some 10 to 50 us of work.
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kGrain = 256, kCellGrain = 32;
 
 /// Radii grow by these parts of themselves and of the centre's largest coordinate, which is more
 /// than the rounding of bounds, of distances and of a ball that moves within another can add up to.
@@ -45,6 +46,11 @@ bool is_last(std::uint64_t cell) {
            (cell >> (2 * kBits) & kMask) == kLast;
 }
 
+/// The order of entries.
+constexpr auto kByPlace = [](const auto& i, const auto& j) {
+    return std::tie(i.cell, i.lower, i.id) < std::tie(j.cell, j.lower, j.id);
+};
+
 double padded(const Bounds& bounds) {
     return bounds.radius * (1 + kPadOfRadius) + kPadOfPlace * bounds.centre.cwiseAbs().maxCoeff();
 }
@@ -61,12 +67,10 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
 
     choose_axes(bounds);
     choose_levels(bounds);
-    sort_items(simulation, bounds);
+    sort_entries(bounds);
+    make_items(simulation, bounds);
     list_cells();
     find_first_cells();
-    // Ends, so that all of the last cell and of the last level lies before the next one.
-    levels_.push_back({std::numeric_limits<int>::max(), 0, 0, cells_.size()});
-    cells_.push_back({std::numeric_limits<std::uint64_t>::max(), entries_.size()});
     pair_lists_.collect(
         kInRanges, items_.size(), kGrain,
         [&](Range items, std::vector<BodyPair>& list) {
@@ -77,9 +81,30 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
     sort_pairs(simulation.bodies.size(), pairs);
 }
 
+bool SortAndSweep::replace_pairs_of(const std::vector<std::uint8_t>& moved,
+                                    const Simulation& simulation, const std::vector<Bounds>& bounds,
+                                    PairTable& pairs) {
+    if (entries_.size() != bounded_.size() || !merge_entries(moved, bounds)) return false;
+    simulation_ = &simulation;
+    make_items(simulation, bounds);
+    list_cells();
+    find_first_cells();
+    moved_cells_.clear();
+    for (std::size_t c = 0; c + 1 < cells_.size(); ++c)
+        for (std::size_t i = cells_[c].first; i < cells_[c + 1].first && !cells_[c].moved; ++i)
+            if (moved[items_[i].id]) cells_[c].moved = true, moved_cells_.push_back(c);
+    pair_lists_.collect(
+        kInRanges, moved_cells_.size(), kCellGrain,
+        [&](Range cells, std::vector<BodyPair>& list) { sweep_moved(moved, cells, list); }, found_);
+    merge_pairs(moved, pairs);
+    return true;
+}
+
 void SortAndSweep::release() {
     const auto of = [](auto& list) { tesserae::release(list); };
     of(entries_), of(items_), of(cells_), of(found_);
+    of(moved_entries_), of(merged_entries_), of(moved_cells_);
+    of(merged_pairs_.first), of(merged_pairs_.second);
     pair_lists_.release();
 }
 
@@ -124,6 +149,8 @@ void SortAndSweep::choose_levels(const std::vector<Bounds>& bounds) {
         (fewest + 1)->bodies += fewest->bodies;
         levels_.erase(fewest);
     }
+    // An end, so that all of the last level lies before the next one.
+    levels_.push_back({std::numeric_limits<int>::max()});
 }
 
 int SortAndSweep::exponent_of(double extent) const { return -std::ilogb(usual_ / extent); }
@@ -143,22 +170,47 @@ std::uint64_t SortAndSweep::coordinate(const Level& level, int cut, double x) co
            static_cast<std::uint64_t>(std::clamp(cells, 0.0, static_cast<double>(kLast - kFirst)));
 }
 
-void SortAndSweep::sort_items(const Simulation& simulation, const std::vector<Bounds>& bounds) {
+SortAndSweep::Entry SortAndSweep::entry_of(BodyId id, std::size_t level, const Bounds& ball) const {
+    std::uint64_t at[3];
+    for (int cut = 0; cut < 3; ++cut)
+        at[cut] = coordinate(levels_[level], cut, ball.centre[cut_axis_[cut]]);
+    return {cell_of(level, at), ball.centre[sorted_axis_] - padded(ball), id};
+}
+
+void SortAndSweep::sort_entries(const std::vector<Bounds>& bounds) {
     entries_.resize(bounded_.size());
     for_each_range(bounded_.size(), kGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const Bounds& ball = bounds[bounded_[i]];
-            const double radius = padded(ball);
-            const std::size_t level = level_of(2 * radius);
-            std::uint64_t at[3];
-            for (int cut = 0; cut < 3; ++cut)
-                at[cut] = coordinate(levels_[level], cut, ball.centre[cut_axis_[cut]]);
-            entries_[i] = {cell_of(level, at), ball.centre[sorted_axis_] - radius, bounded_[i]};
+            entries_[i] = entry_of(bounded_[i], level_of(2 * padded(ball)), ball);
         }
     });
-    tbb::parallel_sort(entries_, [](const Entry& i, const Entry& j) {
-        return std::tie(i.cell, i.lower, i.id) < std::tie(j.cell, j.lower, j.id);
-    });
+    tbb::parallel_sort(entries_, kByPlace);
+}
+
+/// Puts the bodies that moved into the grids of the last search.
+/// @return whether their extents fit into these
+bool SortAndSweep::merge_entries(const std::vector<std::uint8_t>& moved,
+                                 const std::vector<Bounds>& bounds) {
+    moved_entries_.clear(), merged_entries_.clear();
+    for (const BodyId id : bounded_) {
+        if (!moved[id]) continue;
+        const double extent = 2 * padded(bounds[id]);
+        std::size_t level = level_of(extent);
+        while (level + 1 < levels_.size() && levels_[level].cell < kCellWidth * extent) ++level;
+        if (level + 1 >= levels_.size()) return false;
+        moved_entries_.push_back(entry_of(id, level, bounds[id]));
+    }
+    std::sort(moved_entries_.begin(), moved_entries_.end(), kByPlace);
+    const auto stays = std::remove_if(entries_.begin(), entries_.end(),
+                                      [&](const Entry& entry) { return moved[entry.id]; });
+    std::merge(entries_.begin(), stays, moved_entries_.begin(), moved_entries_.end(),
+               std::back_inserter(merged_entries_), kByPlace);
+    entries_.swap(merged_entries_);
+    return true;
+}
+
+void SortAndSweep::make_items(const Simulation& simulation, const std::vector<Bounds>& bounds) {
     items_.resize(entries_.size());
     for_each_range(entries_.size(), kGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -182,14 +234,49 @@ void SortAndSweep::list_cells() {
     for (std::size_t i = 0; i < entries_.size(); ++i)
         if (i == 0 || entries_[i].cell != entries_[i - 1].cell)
             cells_.push_back({entries_[i].cell, i});
+    // An end, so that all of the last cell lies before the next one.
+    cells_.push_back({std::numeric_limits<std::uint64_t>::max(), entries_.size()});
 }
 
 void SortAndSweep::find_first_cells() {
-    for (std::size_t k = 0; k < levels_.size(); ++k)
+    const std::size_t end = cells_.size() - 1;
+    for (std::size_t k = 0; k + 1 < levels_.size(); ++k)
         levels_[k].first = static_cast<std::size_t>(
-            std::lower_bound(cells_.begin(), cells_.end(), std::uint64_t{k} << (3 * kBits),
+            std::lower_bound(cells_.begin(), cells_.begin() + static_cast<std::ptrdiff_t>(end),
+                             std::uint64_t{k} << (3 * kBits),
                              [](const Cell& c, std::uint64_t cell) { return c.cell < cell; }) -
             cells_.begin());
+    levels_.back().first = end;
+}
+
+/// The pairs of bodies that moved, of the cells that hold them, with any other.
+void SortAndSweep::sweep_moved(const std::vector<std::uint8_t>& moved, Range cells,
+                               std::vector<BodyPair>& pairs) const {
+    const std::size_t begin = pairs.size();
+    for (std::size_t k = cells.begin; k < cells.end; ++k) {
+        const std::size_t c = moved_cells_[k], end = cells_[c + 1].first;
+        for (std::size_t i = cells_[c].first; i < end; ++i) {
+            for (std::size_t j = i + 1; j < end && items_[j].lower <= items_[i].upper; ++j)
+                add_if_overlapping(items_[i], items_[j], pairs);
+            if (moved[items_[i].id]) add_unbounded(*simulation_, {i, i + 1}, pairs);
+        }
+        const std::size_t at_once = is_last(cells_[c].cell) ? 1 : end - cells_[c].first;
+        for (std::size_t level = 0; level + 1 < levels_.size(); ++level)
+            for (std::size_t i = cells_[c].first; i < end; i += at_once) {
+                const Range those{i, i + at_once};
+                for_each_cell(reached(those, levels_[level]), levels_[level].first,
+                              levels_[level + 1].first, [&](std::size_t other) {
+                                  // Of two such cells the first sees the other.
+                                  if (other == c || (cells_[other].moved && other < c)) return;
+                                  meet(those, {cells_[other].first, cells_[other + 1].first},
+                                       levels_[level].cell, pairs);
+                              });
+            }
+    }
+    const auto stay = [&](const BodyPair& pair) { return !moved[pair.a] && !moved[pair.b]; };
+    pairs.erase(
+        std::remove_if(pairs.begin() + static_cast<std::ptrdiff_t>(begin), pairs.end(), stay),
+        pairs.end());
 }
 
 /// The pairs of which the first, by cell and then by lower end, is in the range.
@@ -208,8 +295,10 @@ void SortAndSweep::sweep(Range items, std::vector<BodyPair>& pairs) const {
         const std::size_t own = cells_[c].cell >> (3 * kBits);
         const auto meet_all = [&](Range those, const Box& box, std::size_t first,
                                   std::size_t level) {
-            for_each_cell(box, first, levels_[level + 1].first,
-                          [&](Range others) { meet(those, others, levels_[level].cell, pairs); });
+            for_each_cell(box, first, levels_[level + 1].first, [&](std::size_t other) {
+                meet(those, {cells_[other].first, cells_[other + 1].first}, levels_[level].cell,
+                     pairs);
+            });
         };
         meet_all(part, beside(cells_[c].cell), c + 1, own);
         // What shares a last cell may be far apart and reach very many cells of a coarser level.
@@ -248,7 +337,7 @@ SortAndSweep::Box SortAndSweep::reached(Range items, const Level& level) const {
     return box;
 }
 
-/// Visits the bodies of each cell of the box from the first place in cells_ and before the last.
+/// Visits the places of each cell of the box from the first place in cells_ and before the last.
 /// Jumps from one that is not in the box to the next that may be, so that a box may be of any size.
 template <class Visit>
 void SortAndSweep::for_each_cell(const Box& box, std::size_t first, std::size_t last,
@@ -282,7 +371,7 @@ void SortAndSweep::for_each_cell(const Box& box, std::size_t first, std::size_t 
         else if (z > box.high[2])
             c = from(c, cell_of(level, {x, y + 1, box.low[2]}));
         else {
-            visit(Range{cells_[c].first, cells_[c + 1].first});
+            visit(c);
             ++c;
         }
     }
@@ -345,6 +434,30 @@ void SortAndSweep::sort_pairs(std::size_t bodies, PairTable& sorted) {
             std::sort(second.begin() + static_cast<std::ptrdiff_t>(first[a]),
                       second.begin() + static_cast<std::ptrdiff_t>(first[a + 1]));
     });
+}
+
+/// Replaces the pairs of bodies that moved by those found.
+void SortAndSweep::merge_pairs(const std::vector<std::uint8_t>& moved, PairTable& pairs) {
+    std::sort(found_.begin(), found_.end());
+    PairTable& merged = merged_pairs_;
+    merged.first.clear(), merged.second.clear();
+    auto next = found_.begin();
+    for (BodyId a = 0; a + 1 < pairs.first.size(); ++a) {
+        merged.first.push_back(merged.second.size());
+        const auto take_found = [&](BodyId before) {
+            for (; next != found_.end() && next->a == a && next->b < before; ++next)
+                merged.second.push_back(next->b);
+        };
+        for (std::size_t i = pairs.first[a]; i < pairs.first[a + 1]; ++i) {
+            const BodyId b = pairs.second[i];
+            if (moved[a] || moved[b]) continue;
+            take_found(b);
+            merged.second.push_back(b);
+        }
+        take_found(std::numeric_limits<BodyId>::max());
+    }
+    merged.first.push_back(merged.second.size());
+    pairs.first.swap(merged.first), pairs.second.swap(merged.second);
 }
 
 }  // namespace tesserae::parallel

@@ -52,6 +52,14 @@ class SortAndSweep {
     void overlapping_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
                            PairTable& pairs);
 
+    /// Searches again for the pairs of some bodies, where all others have the bounds of the last
+    /// search. Takes little time if these are few.
+    /// @param moved   1 for these, for every body
+    /// @param pairs   as it was found; its pairs of these bodies are replaced
+    /// @return whether that was possible; else nothing has changed, and a search for all is due
+    bool replace_pairs_of(const std::vector<std::uint8_t>& moved, const Simulation& simulation,
+                          const std::vector<Bounds>& bounds, PairTable& pairs);
+
     /// Gives back the memory that it keeps for the next search.
     void release();
 
@@ -78,7 +86,8 @@ class SortAndSweep {
     };
     struct Cell {
         std::uint64_t cell;
-        std::size_t first;  ///< place in items_
+        std::size_t first;   ///< place in items_
+        bool moved = false;  ///< it holds a body that is searched again
     };
     /// From the first to the last coordinate, both included, on the three cut axes.
     struct Box {
@@ -90,9 +99,14 @@ class SortAndSweep {
     int exponent_of(double extent) const;
     std::size_t level_of(double extent) const;
     std::uint64_t coordinate(const Level& level, int cut, double x) const;
-    void sort_items(const Simulation& simulation, const std::vector<Bounds>& bounds);
+    void sort_entries(const std::vector<Bounds>& bounds);
+    bool merge_entries(const std::vector<std::uint8_t>& moved, const std::vector<Bounds>& bounds);
+    Entry entry_of(BodyId id, std::size_t level, const Bounds& ball) const;
+    void make_items(const Simulation& simulation, const std::vector<Bounds>& bounds);
     void list_cells();
     void find_first_cells();
+    void sweep_moved(const std::vector<std::uint8_t>& moved, Range cells,
+                     std::vector<BodyPair>& pairs) const;
     void sweep(Range items, std::vector<BodyPair>& pairs) const;
     Box beside(std::uint64_t cell) const;
     Box reached(Range items, const Level& level) const;
@@ -104,6 +118,7 @@ class SortAndSweep {
     void add_unbounded(const Simulation& simulation, Range items,
                        std::vector<BodyPair>& pairs) const;
     void sort_pairs(std::size_t bodies, PairTable& sorted);
+    void merge_pairs(const std::vector<std::uint8_t>& moved, PairTable& pairs);
 
     const Simulation* simulation_ = nullptr;   ///< of the search under way
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
@@ -116,6 +131,10 @@ class SortAndSweep {
     std::vector<Cell> cells_;     ///< those that hold bodies, ascending, and the end of items_
     ChunkedList<BodyPair> pair_lists_;
     std::vector<BodyPair> found_;
+    // For replace_pairs_of().
+    std::vector<Entry> moved_entries_, merged_entries_;
+    std::vector<std::size_t> moved_cells_;
+    PairTable merged_pairs_;
 };
 
 }  // namespace tesserae::parallel

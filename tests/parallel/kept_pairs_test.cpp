@@ -23,18 +23,24 @@ using namespace tesserae::testing;
 constexpr double kSlowStep = 1.0 / 120;
 
 /// Bodies that go their ways, some of which now and then change their velocity, are put elsewhere,
-/// fall asleep or wake: the pairs are those that testing all finds, from few searches.
+/// fall asleep or wake: the pairs are those that testing all finds, from few searches. Those that
+/// are fast leave their balls in every step.
 TEST(KeptPairs, AreThoseThatTestingAllFinds) {
     std::mt19937_64 engine(11);
     Threads threads(2);
-    for (const double speed : {0.0, 0.1, 3.0, 50.0}) {
+    for (const auto& [speed, fast] :
+         {std::pair{0.0, 0u}, {0.1, 0u}, {3.0, 0u}, {50.0, 0u}, {0.1, 1u}, {0.1, 40u}}) {
         Bodies bodies;
         add(bodies, plane_type(Vec4::UnitY(), -1));
         add(bodies, plane_type(Vec4(1, 1, 1, 1) / 2, -2));
         for (int i = 0; i < 300; ++i) {
             BodyType type = sphere_type(0.1 + 0.1 * (i % 8));
             type.fixed_position = type.fixed_rotation = engine() % 5 == 0;
-            add(bodies, type, random_vector(engine, 2), random_vector(engine, speed));
+            const bool is_fast = bodies.size() < 2 + fast;
+            if (is_fast) type.fixed_position = type.fixed_rotation = false;
+            add(bodies, type, random_vector(engine, 2),
+                is_fast ? Vec4(100 * random_vector(engine, 1).normalized())
+                        : random_vector(engine, speed));
         }
         PhysicsSettings settings;
         settings.sleeping = true;
@@ -58,7 +64,9 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
 
             Bodies& b = simulation.bodies;
             for (BodyId id = 2; id < b.size(); ++id) b.position[id] += kSlowStep * b.velocity[id];
-            const auto chosen = static_cast<BodyId>(2 + engine() % (b.size() - 2));
+            const auto chosen = static_cast<BodyId>(2 + fast + engine() % (b.size() - 2 - fast));
+            for (BodyId id = 2; id < 2 + fast; ++id)
+                if (b.position[id].norm() > 4) b.velocity[id] = -100 * b.position[id].normalized();
             if (i % 10 == 5) b.velocity[chosen] = random_vector(engine, speed);
             if (i % 30 == 20) b.position[chosen] = random_vector(engine, 2);
         }
@@ -66,6 +74,9 @@ TEST(KeptPairs, AreThoseThatTestingAllFinds) {
         EXPECT_GT(kept.searches(), 3u);
         // The fastest, of 0.1 m, keeps within its larger ball for no more than a step.
         EXPECT_LT(kept.searches(), speed > 10 ? kSteps + 1u : kSteps / 2u) << speed;
+        if (fast > 0) {
+            EXPECT_GT(kept.searches_for_some(), kSteps / 2u) << fast;
+        }
     }
 }
 
