@@ -18,7 +18,7 @@ constexpr lanes::Lane<Float8> kAll;
 template <std::size_t kTangents, class Visit>
 [[gnu::always_inline]] inline void visit_rows(RowImpulses<kTangents>& impulses,
                                               RowImpulses<kTangents>& lasts,
-                                              RowImpulses<kTangents, RoughEight>& directions,
+                                              RowImpulses<kTangents>& directions,
                                               std::uint32_t first, std::uint32_t rows,
                                               const Visit& visit) {
     for (std::uint32_t row = first; row < first + rows; ++row)
@@ -41,18 +41,18 @@ void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& v
 }
 
 /// Keeps impulses where they are, without a direction.
-constexpr auto begin = [](const Eight& impulse, Eight& last, RoughEight& direction) {
+constexpr auto begin = [](const Eight& impulse, Eight& last, Eight& direction) {
     last = impulse;
     direction = {};
 };
 /// As if all of the impulses had come since, without a direction.
-constexpr auto begin_at_none = [](const Eight&, Eight& last, RoughEight& direction) {
+constexpr auto begin_at_none = [](const Eight&, Eight& last, Eight& direction) {
     last = {};
     direction = {};
 };
 /// Impulses go from where they were along the new direction.
 auto go(float carried, float length) {
-    return [carried, length](Eight& impulse, Eight& last, RoughEight& direction) {
+    return [carried, length](Eight& impulse, Eight& last, Eight& direction) {
         const Float8 from = kAll.load(last);
         const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction);
         const Float8 here = from + length * along;

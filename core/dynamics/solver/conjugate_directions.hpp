@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/dynamics/constants.hpp"
@@ -41,7 +42,7 @@ class ConjugateDirections {
         const auto [of_step, of_all] = work();
         sums[0] += of_step, sums[1] += of_direction_, sums[2] += of_all;
         const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
-        look_for_rise(ratio, sums[2]);
+        look_for_rise(ratio, sums[0], sums[2]);
         carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
         of_direction_ = of_step + carried_ * of_direction_;
         double twice_energy = 0, fastest = 0;
@@ -64,6 +65,7 @@ class ConjugateDirections {
         if (holds_) return for_bodies([this](auto... of) { go_along(of..., length_); });
         plain_ = std::max(0, plain_ - 1);
         of_direction_ = 0;
+        least_slope_ = std::numeric_limits<double>::infinity();
         for_bodies([](auto... of) { begin_directions(of...); });
     }
 
@@ -119,6 +121,11 @@ class ConjugateDirections {
     /// The relative change that counts as float's rounding, as a part of the warm start or of all
     /// changes: directions would grow from it.
     static constexpr double kFloatStep = 1e-6;
+    /// The growth of the slope over the least since directions began, at which they are given up
+    /// for a while, as a factor. Usual 16. More: where float resolves no more, directions are
+    /// rounding, grow from step to step, and lead impulses and velocities apart. Less: useful
+    /// directions are given up.
+    static constexpr double kMostRisen = 16;
 
     /// Cuts a warm start that is far more than weights: it may have ended an impact and would
     /// replay it. The part that takes the most energy stays.
@@ -151,12 +158,14 @@ class ConjugateDirections {
     }
     /// Gives directions up for a while after a step that led away from the solution.
     /// @param ratio   r.z divided by r.z before the step
-    void look_for_rise(double ratio, double energy) {
-        if (last_slope_ > 0 && !(energy <= last_energy_ && ratio <= kMostCarried)) {
+    void look_for_rise(double ratio, double slope, double energy) {
+        const bool rises = ratio > kMostCarried || slope > kMostRisen * least_slope_;
+        if (last_slope_ > 0 && !(energy <= last_energy_ && !rises)) {
             plain_ = pause_;
             pause_ = 2 * pause_;
         }
         last_energy_ = energy;
+        least_slope_ = std::min(least_slope_, slope);
     }
     /// Calls work(stage, bodies) for pieces of the island's bodies.
     template <class Work>
@@ -194,10 +203,11 @@ class ConjugateDirections {
     const Threads& threads_;
     double warm_start_ = 0;              ///< energy of the warm start, see weigh_warm_start()
     double slope_ = 0, last_slope_ = 0;  ///< r.z
-    double of_direction_ = 0;            ///< rows' part of r.p
-    double last_energy_ = 0;             ///< at the end of the last pair
-    double rounding_ = 0;                ///< rounding of a slope
-    int plain_ = 0, pause_ = 1;          ///< pairs without a direction, now and the next time
+    double least_slope_ = std::numeric_limits<double>::infinity();  ///< since a first direction
+    double of_direction_ = 0;                                       ///< rows' part of r.p
+    double last_energy_ = 0;                                        ///< at the end of the last pair
+    double rounding_ = 0;                                           ///< rounding of a slope
+    int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
     float carried_ = 0, length_ = 1;
     bool holds_ = false;  ///< see holds()
 };

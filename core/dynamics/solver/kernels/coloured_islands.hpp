@@ -197,8 +197,8 @@ struct ColouredIslands {
     std::vector<BodySums> body_sums;  ///< of pieces of each island's `bodies`
     RowImpulses<4> last_round;
     RowImpulses<3> last_general;
-    RowImpulses<4, RoughEight> round_direction;
-    RowImpulses<3, RoughEight> general_direction;
+    RowImpulses<4> round_direction;
+    RowImpulses<3> general_direction;
     std::vector<std::array<double, 2>> round_work, general_work;  ///< sums of each batch
     std::vector<std::array<double, 2>> others_work;               ///< likewise, of each of `others`
     // Inertias of `bodies`, if any turns unevenly.
