@@ -96,7 +96,8 @@ bool SortAndSweep::replace_pairs_of(const std::vector<std::uint8_t>& moved,
     pair_lists_.collect(
         kInRanges, moved_cells_.size(), kCellGrain,
         [&](Range cells, std::vector<BodyPair>& list) { sweep_moved(moved, cells, list); }, found_);
-    merge_pairs(moved, pairs);
+    std::sort(found_.begin(), found_.end());
+    replace_pairs(moved, found_, pairs, merged_pairs_);
     return true;
 }
 
@@ -434,30 +435,6 @@ void SortAndSweep::sort_pairs(std::size_t bodies, PairTable& sorted) {
             std::sort(second.begin() + static_cast<std::ptrdiff_t>(first[a]),
                       second.begin() + static_cast<std::ptrdiff_t>(first[a + 1]));
     });
-}
-
-/// Replaces the pairs of bodies that moved by those found.
-void SortAndSweep::merge_pairs(const std::vector<std::uint8_t>& moved, PairTable& pairs) {
-    std::sort(found_.begin(), found_.end());
-    PairTable& merged = merged_pairs_;
-    merged.first.clear(), merged.second.clear();
-    auto next = found_.begin();
-    for (BodyId a = 0; a + 1 < pairs.first.size(); ++a) {
-        merged.first.push_back(merged.second.size());
-        const auto take_found = [&](BodyId before) {
-            for (; next != found_.end() && next->a == a && next->b < before; ++next)
-                merged.second.push_back(next->b);
-        };
-        for (std::size_t i = pairs.first[a]; i < pairs.first[a + 1]; ++i) {
-            const BodyId b = pairs.second[i];
-            if (moved[a] || moved[b]) continue;
-            take_found(b);
-            merged.second.push_back(b);
-        }
-        take_found(std::numeric_limits<BodyId>::max());
-    }
-    merged.first.push_back(merged.second.size());
-    pairs.first.swap(merged.first), pairs.second.swap(merged.second);
 }
 
 }  // namespace tesserae::parallel

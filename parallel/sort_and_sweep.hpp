@@ -7,26 +7,10 @@
 
 #include "core/dynamics/contacts/chunked_list.hpp"
 #include "core/dynamics/step/step_data.hpp"
+#include "parallel/pair_table.hpp"
 #include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
-
-/// Pairs of bodies, ascending: each body's seconds are there one after the other.
-struct PairTable {
-    std::vector<std::size_t> first = {0};  ///< of every body's in `second`, and an end
-    std::vector<BodyId> second;
-
-    std::size_t size() const { return second.size(); }
-    /// Calls visit(a, b) for some of the pairs, by their numbers.
-    template <class Visit>
-    void for_each(Range pairs, const Visit& visit) const {
-        auto next = std::upper_bound(first.begin(), first.end(), pairs.begin);
-        for (std::size_t i = pairs.begin; i < pairs.end; ++i) {
-            while (*next == i) ++next;
-            visit(static_cast<BodyId>(next - first.begin() - 1), second[i]);
-        }
-    }
-};
 
 /// Finds overlapping balls in time that grows little faster than their number.
 ///
@@ -118,7 +102,6 @@ class SortAndSweep {
     void add_unbounded(const Simulation& simulation, Range items,
                        std::vector<BodyPair>& pairs) const;
     void sort_pairs(std::size_t bodies, PairTable& sorted);
-    void merge_pairs(const std::vector<std::uint8_t>& moved, PairTable& pairs);
 
     const Simulation* simulation_ = nullptr;   ///< of the search under way
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
