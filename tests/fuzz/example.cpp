@@ -12,6 +12,7 @@
 #include "render/frame.hpp"
 #include "scenes/film/simulate.hpp"
 #include "scenes/load/load.hpp"
+#include "scenes/trajectory/joint_datasets.hpp"
 
 namespace tesserae::fuzz {
 
@@ -50,6 +51,20 @@ size = [0.5, 0.5, 0.5, 0.5]
 count = [2, 1, 1, 1]
 spacing = 1
 position = [0, 1.25, 0, 0]
+[[joint]]
+name = "axle"
+type = "hinge"
+a = "box"
+anchor = [0, 0.5, 0, 0]
+plane = "xz"
+motor = { speed = 3, max = 100 }
+limits = [-90, 90]
+[[joint]]
+type = "rope"
+a = "box"
+anchor_b = [0, 2, 0, 0]
+length = 2
+break = { force = 1 }
 [camera]
 position = [0, 2, -8, 0]
 look_at = [0, 1, 0, 0]
@@ -142,6 +157,9 @@ scenes::TrajectoryHeader ExampleTrajectory::header() const {
     header.motion_hash = scene_.motion_hash;
     header.program_version = "0.1.0";
     header.bodies = scene_.bodies.size();
+    for (std::size_t i = 0; i < scene_.joints.size(); ++i)
+        header.joints.push_back({scene_.joint_names[i], i == 0 ? "deg" : ""});
+    header.joint_parts = make_joints(scene_.joints, scene_.bodies).parts();
     header.steps_per_second = scene_.physics->steps_per_second;
     header.motion_version = kMotionVersion;
     header.described = {scene_.bodies.types, scene_.bodies.type, scene_.names};
@@ -156,14 +174,17 @@ void ExampleTrajectory::append(scenes::TrajectoryWriter& writer, std::size_t lac
         step = resume->step;
         memory = std::move(resume->memory);
     }
-    Stepper world(std::move(start), *scene_.physics);
+    Stepper world(make_simulation(std::move(start), *scene_.physics, scene_.joints));
     world.memory() = std::move(memory);
     scenes::StepFacts facts;
+    facts.joints = scenes::room_for_joints(scene_.joints.size());
     for (std::uint64_t row = writer.rows(); row + lacking < steps_.size(); ++row) {
         for (; step < steps_[row]; ++step)
             facts.report = world.step(1 / scene_.physics->steps_per_second);
         facts.step = step;
         facts.time = static_cast<double>(step) / scene_.physics->steps_per_second;
+        facts.joints.impulse[0] = facts.joints.position[0] = facts.time;
+        facts.joints.broken[1] = row > 2 ? 1 : 0;
         writer.append(facts, world.bodies(), world.memory());
     }
     if (lacking == 0) writer.finish();

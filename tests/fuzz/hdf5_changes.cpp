@@ -231,6 +231,10 @@ void put_attribute(hid_t file, const std::string& path, const std::string& name,
     const Handle type = any_type(input);
     Extent extent;
     const Handle space = any_space(input, extent);
+    // As a writer HDF5 does not survive sizes that overflow.
+    double size = static_cast<double>(H5Tget_size(type.get()));
+    for (const hsize_t side : extent) size *= static_cast<double>(side);
+    if (!(size < 0x1p62)) return;
     const Handle attribute(
         H5Acreate2(object.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
         H5Aclose);

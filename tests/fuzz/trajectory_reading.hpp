@@ -13,8 +13,8 @@
 
 namespace tesserae::fuzz {
 
-/// Everything that reads a trajectory and needs nothing else: its rows as rendering reads them, and
-/// `tesserae info`, `hash` and `diff` with a whole one.
+/// Everything that reads a trajectory and needs nothing else: its rows as rendering reads them,
+/// what they tell of joints, and `tesserae info`, `hash` and `diff` with a whole one.
 inline void read_trajectory(const std::filesystem::path& file, const std::filesystem::path& whole) {
     accepts([&] {
         const scenes::TrajectoryReader reader(file);
@@ -25,6 +25,11 @@ inline void read_trajectory(const std::filesystem::path& file, const std::filesy
             if (!accepts([&] { reader.read_row(row, bodies); })) break;
             for (const Vec4& position : bodies.position)
                 require(position.allFinite(), "a position is not finite");
+            accepts([&] {
+                const scenes::JointFacts joints = reader.joints(row);
+                require(joints.broken.size() == reader.header().joints.size(),
+                        "a row tells of other joints than there are");
+            });
         }
         reader.facts();
     });
