@@ -4,8 +4,8 @@
 # vectors of neighbouring doubles that become floats and then doubles again: it takes the first
 # doubles for the last ones, and results are not those of other compilers.
 #   bash tests/roundings.sh BUILD   fails and names the functions where the g++ of BUILD does so
-# It compiles the program's sources again and reads what g++ writes about its vectors: a quarter of an
-# hour on two cores. What was right stays so until its object in BUILD is compiled anew: the next run
+# It compiles the program's sources again and reads what g++ writes about its vectors: some minutes
+# on two cores. What was right stays so until its object in BUILD is compiled anew: the next run
 # takes only what has changed.
 set -euo pipefail
 folder=$(mktemp -d)
