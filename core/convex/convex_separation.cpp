@@ -231,6 +231,17 @@ KnownGap deepest_overlap(const MinkowskiDifference& difference, Simplex& simplex
         .run(simplex, least.facet, known, known > 0 && !least.is_exact);
 }
 
+/// The simplex of one point along a direction.
+Simplex first_simplex(MinkowskiDifference& difference, const Vec4& guess) {
+    const bool is_direction = guess.allFinite() && !guess.isZero(0);
+    const DifferencePoint first =
+        difference.support(is_direction ? stable_normalized(guess) : Vec4(Vec4::UnitX()));
+    difference.note_coordinates(first);
+    Simplex simplex;
+    simplex.start(Vec4::Zero(), first);
+    return simplex;
+}
+
 ConvexSeparation separation_from(const MinkowskiDifference& difference, Simplex& simplex,
                                  double enough) {
     KnownGap best = approach_target(difference, simplex, enough / difference.unit());
@@ -253,13 +264,21 @@ ConvexSeparation separation_from(const MinkowskiDifference& difference, Simplex&
 ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& guess, double size,
                                double enough) {
     MinkowskiDifference difference(a, b, size);
-    const bool is_direction = guess.allFinite() && !guess.isZero(0);
-    const DifferencePoint first =
-        difference.support(is_direction ? stable_normalized(guess) : Vec4(Vec4::UnitX()));
-    difference.note_coordinates(first);
-    Simplex simplex;
-    simplex.start(Vec4::Zero(), first);
+    Simplex simplex = first_simplex(difference, guess);
     return separation_from(difference, simplex, enough);
+}
+
+std::optional<Vec4> direction_of_overlap(const Support& a, const Support& b, const Vec4& guess,
+                                         double size) {
+    MinkowskiDifference difference(a, b, size);
+    Simplex simplex = first_simplex(difference, guess);
+    approach_target(difference, simplex, std::numeric_limits<double>::infinity());
+    if (!simplex.contains_target()) return std::nullopt;
+    const FullSimplex full = filled_up(difference, simplex);
+    if (full.count < 5) return std::nullopt;
+    const LeastOverlap least = least_overlap(difference, full.point);
+    if (least.normal.isZero(0)) return std::nullopt;
+    return least.normal;
 }
 
 ConvexSeparation separation_of(const Support& a, const Support& b,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "core/algebra/vector.hpp"
@@ -61,6 +62,12 @@ struct VertexPair {
 ConvexSeparation separation_of(const Support& a, const Support& b,
                                std::span<const VertexPair> first, double size,
                                double enough = std::numeric_limits<double>::infinity());
+
+/// Returns about the normal along which two bodies overlap least, for a method to start from that
+/// converges fast near it. Costs a fifth of separation_of(), which goes on from there.
+/// @return nothing if they do not overlap, or hardly
+std::optional<Vec4> direction_of_overlap(const Support& a, const Support& b, const Vec4& guess,
+                                         double size);
 
 /// Returns the separation of two bodies that are all points within a radius of two convex cores,
 /// from the separation of the cores. The support function of a ball is the same in all directions,
