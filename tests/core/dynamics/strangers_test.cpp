@@ -4,6 +4,9 @@
 #include <functional>
 #include <vector>
 
+#include "core/dynamics/contacts/find_contacts.hpp"
+#include "core/dynamics/motion/motion.hpp"
+#include "core/dynamics/step/step.hpp"
 #include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
 
@@ -115,6 +118,24 @@ TEST(Strangers, FarAwayChangeNoBit) {
                 << kind.name << (spheres_only ? ", spheres" : "");
         }
     }
+}
+
+/// How far ahead contacts of two bodies are looked for does not depend on how many pairs others
+/// are.
+TEST(Strangers, ThatAreManyPairsChangeNoMargin) {
+    Bodies bodies;
+    add(bodies, sphere_type(0.5), {0, 0, 0, 0}, {100, 0, 0, 0});
+    add(bodies, sphere_type(0.5), {0, 1.2, 0, 0}, {100, 3, 0, 0});
+    const Simulation simulation = make_simulation(bodies, PhysicsSettings{});
+    StepData step;
+    begin_step(simulation, step, kStep);
+    advance_first_half(simulation, step, {0, 2});
+    const Margins alone = margins_of(simulation, step, 0, 1);
+    step.pairs.assign(100000, {0, 1});
+    const Margins beside = margins_of(simulation, step, 0, 1);
+    EXPECT_EQ(alone.as_they_move, beside.as_they_move);
+    EXPECT_EQ(alone.if_one_stops, beside.if_one_stops);
+    EXPECT_GT(alone.as_they_move, 0.01);
 }
 
 }  // namespace
