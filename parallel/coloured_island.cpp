@@ -58,7 +58,6 @@ class AllThreads {
 }  // namespace
 
 void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (step.awaits[island] == Awaits::kNothing) return;
     tesserae::solve_coloured_impact(simulation, step, island, AllThreads{});
 }
 

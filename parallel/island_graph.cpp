@@ -52,7 +52,7 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
     g.of_coloured = &of_coloured;
     g.simulation = &simulation;
     g.step = &step;
-    const auto size = [&](std::uint32_t island) { return step.islands.size_of(island); };
+    const auto size = [&](std::uint32_t island) { return step.size_of_group(island); };
 
     // Those worth a message by falling size. The order of the small ones is all the same.
     g.order.clear();
@@ -63,7 +63,7 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
         return size(i) != size(j) ? size(i) > size(j) : i < j;
     });
     for (std::uint32_t island = 0; island < count; ++island)
-        if (size(island) < kContactsOfMessage) g.order.push_back(island);
+        if (size(island) > 0 && size(island) < kContactsOfMessage) g.order.push_back(island);
 
     for (std::size_t begin = 0; begin < g.order.size();) {
         Graph::Message message{begin, begin, 0};

@@ -58,7 +58,7 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
     EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "27bebc09657b24b0675a8d5a29e00d24");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "59229a88d7f3a424527e9f3ed256c7f8");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "04894be8b25ccb423c66132c1a5b3ef5");
     EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "8eb1e1b88b7e36f76cff810dced35ba9");
     EXPECT_EQ(end_of_gallery("race.toml", 240).hash, "4dcd38be1eecfd85b101bec856cf8d86");
 }
@@ -66,9 +66,9 @@ TEST_F(Golden, GalleryScenesMoveAsEver) {
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> substeps = {"physics.substeps=4", "physics.iterations=2",
                                                "physics.sleeping=true"};
-    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "ba3b566da787e2cab360ecc96fd04750");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "d463d2a18c30a07286287e377d436dc4");
     EXPECT_EQ(end_of_generated("boxes", 300, 180, substeps).hash,
-              "7ce21d18d76828620671dd417c5e03f4");
+              "683e0a6892e5261bee8093175f2a5632");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "344680571f0760c66d55ddd439afe065");
 }
 

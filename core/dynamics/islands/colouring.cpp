@@ -36,6 +36,8 @@ void size_directions(ColouredIslands& coloured) {
     size_impulses(coloured.general_rows, coloured.friction, coloured.general_direction);
     resize_anew(coloured.round_work, coloured.round.size());
     resize_anew(coloured.general_work, coloured.general.size());
+    resize_anew(coloured.round_lane_work, coloured.round.size());
+    resize_anew(coloured.general_lane_work, coloured.general.size());
     resize_anew(coloured.others_work, coloured.others.size());
 }
 
@@ -46,8 +48,12 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     coloured.friction = simulation.needs.friction;
     coloured.rolling = simulation.needs.rolling;
     coloured.turns_unevenly = simulation.needs.uneven_inertia;
+    coloured.islands.clear();
+    coloured.group.clear();
     coloured.first_body.assign(1, 1);
+    coloured.first_member.assign(1, 0);
     coloured.first_colour.assign(1, 0);
+    coloured.shares_batches.clear();
     coloured.mass_unit.clear();
     coloured.bodies.assign(1, BodyId{0});  // stands for those that contacts do not move
     coloured.colours.clear();
@@ -59,25 +65,30 @@ void Colouring::begin(const Simulation& simulation, StepData& step) {
     used_.clear();
 }
 
-void Colouring::add(const Simulation& simulation, StepData& step, std::size_t island) {
+void Colouring::add(const Simulation& simulation, StepData& step,
+                    std::span<const std::uint32_t> group, bool share) {
     ColouredIslands& coloured = step.coloured;
     place_.resize(simulation.bodies.size(), 0);
-    list_pairs(simulation, step, island);
-    // Large enough for the largest island: small ones come before and after it.
+    pairs_.clear();
+    member_ = 0;
+    for (const std::uint32_t island : group) add_member(simulation, step, island), ++member_;
+    // Large enough for the largest group: small ones come before and after it.
     if (order_.size() < pairs_.size()) resize_anew(order_, pairs_.size());
     counting_sort(
         pairs_.size(), (kColours + 1) * kKinds, [&](std::size_t i) { return pairs_[i].bucket; },
         start_,
         [&](std::size_t i, std::size_t place) { order_[place] = static_cast<std::uint32_t>(i); });
 
-    std::uint32_t one_row_each = 0;
+    auto rows_of_round = static_cast<std::uint32_t>(coloured.round.size());  // one each
     for (std::size_t colour = 0; colour <= kColours; ++colour) {
         const std::uint32_t* const start = &start_[colour * kKinds];
         if (start[0] == start[kKinds] && colour < kColours) continue;
-        const BatchRange round =
-            add_batches(step, {start[0], start[1]}, one_row_each, coloured.round);
+        const BatchRange round = add_batches(step, {start, 2}, rows_of_round, coloured.round);
+        // The pairs of an island alone need not have equally many points.
+        const std::array<std::uint32_t, 2> all = {start[1], start[kOthers]};
         const BatchRange general =
-            add_batches(step, {start[1], start[kOthers]}, coloured.general_rows, coloured.general);
+            add_batches(step, share ? std::span(&start[1], kOthers) : std::span(all),
+                        coloured.general_rows, coloured.general);
         for (std::uint32_t i = general.begin; i < general.end; ++i) {
             coloured.general[i].response = coloured.point_responses;
             coloured.point_responses += responses_of(coloured.general[i].rows);
@@ -85,8 +96,18 @@ void Colouring::add(const Simulation& simulation, StepData& step, std::size_t is
         coloured.colours.push_back(
             {round, general, add_others(step, {start[kOthers], start[kKinds]})});
     }
+    coloured.first_member.push_back(static_cast<std::uint32_t>(coloured.islands.size()));
     coloured.first_colour.push_back(static_cast<std::uint32_t>(coloured.colours.size()));
+    coloured.shares_batches.push_back(share);
+}
 
+/// The bodies and pairs of an island.
+void Colouring::add_member(const Simulation& simulation, StepData& step, std::size_t island) {
+    ColouredIslands& coloured = step.coloured;
+    step.islands.coloured[island] = static_cast<std::uint32_t>(coloured.islands.size());
+    coloured.islands.push_back(static_cast<std::uint32_t>(island));
+    coloured.group.push_back(static_cast<std::uint32_t>(coloured.shares_batches.size()));
+    list_pairs(simulation, step, island);
     // The middle of the masses' range, as its logarithm.
     int least = std::numeric_limits<int>::max(), most = std::numeric_limits<int>::min();
     for (std::size_t i = coloured.first_body.back(); i < coloured.bodies.size(); ++i) {
@@ -113,6 +134,8 @@ void Colouring::end(StepData& step) {
     resize_anew(coloured.round_rows, coloured.round.size());
     resize_anew(coloured.round_second, coloured.round.size());
     resize_anew(coloured.frames, coloured.general.size());
+    resize_anew(coloured.round_left, coloured.round.size());
+    resize_anew(coloured.general_left, coloured.general.size());
     resize_anew(coloured.rows, coloured.general_rows);
     resize_anew(coloured.second, coloured.general_rows);
     resize_anew(coloured.point_response, coloured.point_responses);
@@ -137,7 +160,6 @@ std::uint32_t Colouring::place_of(const Simulation& simulation, StepData& step, 
 }
 
 void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::size_t island) {
-    pairs_.clear();
     for (const std::uint32_t n : step.islands.runs_in(island)) {
         const ContactList::Run run = step.contacts.nth_run(n);
         for (std::size_t begin = run.begin; begin < run.end; begin += kManifoldPoints)
@@ -149,7 +171,7 @@ void Colouring::list_pairs(const Simulation& simulation, StepData& step, std::si
         constraint.place_b = place_of(simulation, step, constraint.b);
         used_.resize(step.coloured.bodies.size(), 0);
         const int colour = colour_of(constraint.place_a, constraint.place_b);
-        pairs_.push_back({i, static_cast<std::uint16_t>(colour * kKinds + kOthers), 0});
+        pairs_.push_back({i, static_cast<std::uint16_t>(colour * kKinds + kOthers), 0, member_});
     }
 }
 
@@ -163,6 +185,7 @@ void Colouring::add_pair(const Simulation& simulation, StepData& step, const Con
     const bool round =
         points == 1 && simulation.type_of(run.a).round && simulation.type_of(run.b).round;
     pair.points = static_cast<std::uint8_t>(points);
+    pair.member = member_;
     used_.resize(step.coloured.bodies.size(), 0);
     const std::size_t kind = round ? 0 : 1 + kManifoldPoints - points;
     pair.bucket = static_cast<std::uint16_t>(colour_of(a, b) * kKinds + kind);
@@ -189,24 +212,34 @@ BatchRange Colouring::add_others(StepData& step, Range some) const {
     return range;
 }
 
-BatchRange Colouring::add_batches(const StepData& step, Range pairs, std::uint32_t& rows,
-                                  std::vector<Batch>& batches) const {
+/// Of pairs of several kinds, each in batches of its own: places in order_ from one start to the
+/// next.
+BatchRange Colouring::add_batches(const StepData& step, std::span<const std::uint32_t> starts,
+                                  std::uint32_t& rows, std::vector<Batch>& batches) const {
     BatchRange range;
     range.begin = static_cast<std::uint32_t>(batches.size());
-    for (std::size_t begin = pairs.begin; begin < pairs.end; begin += kLanes) {
-        Batch& batch = batches.emplace_back();
-        batch.row = rows;
-        for (std::size_t k = 0; k < std::min(kLanes, pairs.end - begin); ++k) {
-            const Pair& pair = pairs_[order_[begin + k]];
-            const auto [a, b] = step.contacts.pair(pair.first);
-            batch.a[k] = place_[a], batch.b[k] = place_[b];
-            batch.contact[k] = pair.first, batch.points[k] = pair.points;
-            batch.rows = std::max<std::uint32_t>(batch.rows, pair.points);
-        }
-        rows += batch.rows;
-    }
+    for (std::size_t kind = 0; kind + 1 < starts.size(); ++kind)
+        for (std::size_t begin = starts[kind]; begin < starts[kind + 1]; begin += kLanes)
+            add_batch(step, {begin, std::min<std::size_t>(starts[kind + 1], begin + kLanes)}, rows,
+                      batches);
     range.end = static_cast<std::uint32_t>(batches.size());
     return range;
+}
+
+void Colouring::add_batch(const StepData& step, Range pairs, std::uint32_t& rows,
+                          std::vector<Batch>& batches) const {
+    Batch& batch = batches.emplace_back();
+    batch.row = rows;
+    for (std::size_t k = 0; k < pairs.end - pairs.begin; ++k) {
+        const Pair& pair = pairs_[order_[pairs.begin + k]];
+        const auto [a, b] = step.contacts.pair(pair.first);
+        batch.a[k] = place_[a], batch.b[k] = place_[b];
+        batch.contact[k] = pair.first, batch.points[k] = pair.points;
+        batch.member[k] = pair.member;
+        batch.members = batch.members | Members::only(pair.member);
+        batch.rows = std::max<std::uint32_t>(batch.rows, pair.points);
+    }
+    rows += batch.rows;
 }
 
 }  // namespace tesserae

@@ -10,14 +10,15 @@
 namespace tesserae {
 namespace {
 
-/// Calls visit(batch, lane) for all pairs of a coloured island.
+/// Calls visit(batch, lane) for all pairs of a coloured island that is a group by itself.
 template <class Visit>
 void for_pairs(const ColouredIslands& coloured, std::size_t place, const Visit& visit) {
     const auto visit_all = [&](const std::vector<Batch>& all, BatchRange range) {
         for (std::uint32_t i = range.begin; i < range.end; ++i)
             for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k) visit(all[i], k);
     };
-    for (std::uint32_t i = coloured.first_colour[place]; i < coloured.first_colour[place + 1];
+    const std::uint32_t group = coloured.group[place];
+    for (std::uint32_t i = coloured.first_colour[group]; i < coloured.first_colour[group + 1];
          ++i) {
         visit_all(coloured.round, coloured.colours[i].round);
         visit_all(coloured.general, coloured.colours[i].general);
@@ -46,8 +47,8 @@ void ImpactPatches::begin(const Simulation& simulation, StepData& step,
     next_.resize(near_.size());
     parent_.resize(near_.size());
     for (std::size_t island = 0; island < islands_; ++island)
-        if (islands.is_coloured(island) && islands.contacts[island] >= kPatchedFrom &&
-            islands.constraints_in(island).empty())
+        if (islands.is_coloured(island) && !step.coloured.shares(islands.coloured[island]) &&
+            islands.contacts[island] >= kPatchedFrom && islands.constraints_in(island).empty())
             add_patches(step, island);
     if (patched_.empty()) return;
     step.rows.resize(rows_);

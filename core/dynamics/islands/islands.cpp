@@ -18,6 +18,9 @@ namespace {
 /// The number of a body that is in no island.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+/// The most pairs of a group of islands, as many as there are colours.
+constexpr std::size_t kPairsOfGroup = 64;
+
 /// The range of masses of an island, as a power of 2, up to which their products with sizes fit in
 /// floats.
 constexpr int kMostExponents = 60;
@@ -39,22 +42,52 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);
-    std::uint32_t coloured = 0, rows = 0;
-    for (std::size_t island = 0; island < islands.size(); ++island) {
+    std::uint32_t rows = 0;
+    for (std::uint32_t island = 0; island < islands.size(); ++island) {
         if (!islands.direct[island] && is_coloured(islands, island)) {
-            colouring_.add(simulation, step, island);
-            islands.coloured[island] = coloured++;
+            add_coloured(simulation, step, island);
         } else {
             islands.first_row[island] = rows;
             rows += islands.contacts[island];
         }
     }
+    add_group(simulation, step);
     colouring_.end(step);
     resize_anew(step.rows, rows);
     if (simulation.needs.rolling) resize_anew(step.rolling_rows, rows);
     const std::size_t all_rows = rows + step.constraints.size();
     resize_anew(step.bodies_of_rows, 2 * all_rows);
     resize_anew(step.motions_of_rows, 2 * all_rows);
+}
+
+/// To the present group, or by itself.
+void IslandBuilder::add_coloured(const Simulation& simulation, StepData& step,
+                                 std::uint32_t island) {
+    const std::size_t pairs = pairs_if_few(step, island);
+    if (pairs == 0) return colouring_.add(simulation, step, {&island, 1}, false);
+    if (group_.size() == Members::kMost || pairs_of_group_ + pairs > kPairsOfGroup)
+        add_group(simulation, step);
+    group_.push_back(island);
+    pairs_of_group_ += pairs;
+}
+
+void IslandBuilder::add_group(const Simulation& simulation, StepData& step) {
+    if (!group_.empty()) colouring_.add(simulation, step, group_, true);
+    group_.clear();
+    pairs_of_group_ = 0;
+}
+
+/// The number of an island's pairs if it may share batches with others, else 0. It must have no
+/// more pairs than there are colours, and be solved along conjugate directions.
+std::size_t IslandBuilder::pairs_if_few(const StepData& step, std::size_t island) {
+    const Islands& islands = step.islands;
+    if (!islands.conjugates[island] || !islands.constraints_in(island).empty()) return 0;
+    std::size_t pairs = 0;
+    for (const std::uint32_t run : islands.runs_in(island)) {
+        pairs += (step.contacts.nth_run(run).size() + kManifoldPoints - 1) / kManifoldPoints;
+        if (pairs > kPairsOfGroup) return 0;
+    }
+    return pairs;
 }
 
 bool IslandBuilder::is_coloured(const Islands& islands, std::size_t island) const {

@@ -46,6 +46,9 @@ class IslandBuilder {
     ColouredFrom coloured_from_;
     BodyId root_of(BodyId id);
     bool is_coloured(const Islands& islands, std::size_t island) const;
+    void add_coloured(const Simulation& simulation, StepData& step, std::uint32_t island);
+    void add_group(const Simulation& simulation, StepData& step);
+    static std::size_t pairs_if_few(const StepData& step, std::size_t island);
     BodyId join(const Simulation& simulation, BodyId a, BodyId b);
     std::uint32_t number_islands();
     void weigh_islands(const Simulation& simulation, Islands& islands);
@@ -60,6 +63,8 @@ class IslandBuilder {
     std::vector<FloatRange> floats_;              ///< of every island's bodies
     std::vector<std::uint32_t> jointed_;          ///< number of each island's bodies with joints
     std::vector<std::uint8_t> is_jointed_;        ///< of every body: it is counted there
+    std::vector<std::uint32_t> group_;            ///< islands that will share batches
+    std::size_t pairs_of_group_ = 0;
     Colouring colouring_;
 };
 

@@ -54,20 +54,19 @@ LaneCount most_lanes() {
     return most;
 }
 
-void begin_changes(const ColouredStage& stage, Range bodies) {
+void begin_changes(const ColouredStage& stage, Range bodies, double mass_unit) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
         const BodyId id = coloured.bodies[i];
         const TypeProperties& type = stage.simulation.type_of(id);
-        const double inverse = type.isotropic ? type.inverse_inertia.xy * stage.mass_unit : 0;
+        const double inverse = type.isotropic ? type.inverse_inertia.xy * mass_unit : 0;
         coloured.changes[i] = {};
-        coloured.changes[i].rest[2] = static_cast<float>(type.inverse_mass * stage.mass_unit);
+        coloured.changes[i].rest[2] = static_cast<float>(type.inverse_mass * mass_unit);
         coloured.changes[i].rest[3] = static_cast<float>(inverse);
         if (!coloured.turns_unevenly || stage.made) continue;
         coloured.inverse_inertias[i] =
-            type.isotropic
-                ? packed(inverse)
-                : packed(without_specks(stage.step.inverse_inertia[id]), stage.mass_unit);
+            type.isotropic ? packed(inverse)
+                           : packed(without_specks(stage.step.inverse_inertia[id]), mass_unit);
     }
 }
 

@@ -10,7 +10,7 @@
 #include "core/dynamics/solver/constraint_rows.hpp"
 #include "core/dynamics/solver/kernels/kernels.hpp"
 
-// A coloured island as the passes of the solver see it: its bodies and colours.
+// A group of coloured islands as the passes of the solver see it: bodies and colours.
 namespace tesserae {
 
 /// Does the parts of a pass one after the other. In parallel/ there is a class with the same
@@ -53,7 +53,8 @@ auto results_of_pieces(const Threads& threads, Range all, const Work& work) {
 
 /// Starts the records of changes of the bodies in the range (places in ColouredIslands::bodies):
 /// nothing has changed yet.
-void begin_changes(const ColouredStage& stage, Range bodies);
+/// @param mass_unit   of their island [kg]
+void begin_changes(const ColouredStage& stage, Range bodies, double mass_unit);
 /// Writes the bodies' step.impact_motion after the compression, whose changes are not added yet.
 void keep_impact_motion(const ColouredStage& stage, Range bodies);
 /// Returns twice the bodies' kinetic energy [J] before the compression and after it; its changes
@@ -77,30 +78,40 @@ void end_correction(const ColouredStage& stage, Range bodies);
 /// Takes back the velocities of the position correction, once the bodies have moved.
 void take_correction_back(const ColouredStage& stage, Range bodies);
 
-/// One coloured island and its colours.
-class ColouredIsland {
+/// A group of coloured islands and its colours.
+class ColouredGroup {
   public:
-    ColouredIsland(const Simulation& simulation, StepData& step, std::size_t island)
+    /// @param island   the first of the group
+    ColouredGroup(const Simulation& simulation, StepData& step, std::size_t island)
         : all_(step.coloured),
-          number_(island),
-          place_(step.islands.coloured[island]),
-          stage_{simulation, step, all_.mass_unit[place_]} {}
+          first_(step.islands.coloured[island]),
+          group_(all_.group[first_]),
+          stage_{simulation, step, first_, all_.shares_batches[group_] != 0} {}
 
     /// Sets the cause that the next passes solve. Rows that an impact has made stay for the load.
     void begin(Cause cause) {
         stage_.cause = cause;
-        stage_.parting = parting_of(stage_.step, number_);
-        stage_.made = stage_.step.has_rows[number_] != 0;
+        stage_.made = stage_.step.has_rows[island(0)] != 0;
+        for (const int member : members())
+            stage_.parting[member] = parting_of(stage_.step, island(member));
     }
-    void leave_friction_out() { stage_.friction = false; }
+    void leave_friction_out(Members some) { stage_.frictionless = some; }
 
     const ColouredStage& stage() const { return stage_; }
-    std::size_t number() const { return number_; }  ///< among all islands
-    Range bodies() const { return {all_.first_body[place_], all_.first_body[place_ + 1]}; }
-    /// The sums of the pieces of kSumPiece bodies.
-    std::span<BodySums> body_sums() const {
-        const auto [begin, end] = bodies();
-        BodySums* const first = all_.body_sums.data() + begin / kSumPiece + place_;
+    Members members() const {
+        return Members::first(
+            static_cast<int>(all_.first_member[group_ + 1] - all_.first_member[group_]));
+    }
+    /// Returns the number of an island among all.
+    std::size_t island(int member) const { return all_.islands[place(member)]; }
+    double mass_unit(int member) const { return all_.mass_unit[place(member)]; }
+    Range bodies(int member) const {
+        return {all_.first_body[place(member)], all_.first_body[place(member) + 1]};
+    }
+    /// The sums of the pieces of kSumPiece bodies of an island.
+    std::span<BodySums> body_sums(int member) const {
+        const auto [begin, end] = bodies(member);
+        BodySums* const first = all_.body_sums.data() + begin / kSumPiece + place(member);
         return {first, (end - begin + kSumPiece - 1) / kSumPiece};
     }
 
@@ -109,8 +120,8 @@ class ColouredIsland {
     template <class Threads, class Visit>
     void for_colours(const Threads& threads, LaneCount lanes, bool backward,
                      const Visit& visit) const {
-        const std::uint32_t first = all_.first_colour[place_];
-        const std::uint32_t count = all_.first_colour[place_ + 1] - first;
+        const std::uint32_t first = all_.first_colour[group_];
+        const std::uint32_t count = all_.first_colour[group_ + 1] - first;
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t colour = backward ? count - 1 - i : i;
             const ColourBatches& batches = all_.colours[first + colour];
@@ -122,13 +133,16 @@ class ColouredIsland {
     }
 
   private:
+    std::size_t place(int member) const { return first_ + static_cast<std::size_t>(member); }
+
     ColouredIslands& all_;
-    std::size_t number_;
-    std::uint32_t place_;
+    std::uint32_t first_;  ///< place of the first island among the coloured ones
+    std::uint32_t group_;
     ColouredStage stage_;
 };
 
-/// Returns the constraints of a coloured island that are no contacts, or some of them.
+/// Returns the constraints of a coloured island that are no contacts, or some of them. An island
+/// that has any is a group by itself.
 /// @param some   in ColouredIslands::others
 inline ConstraintRows<MotionOfChanges> others_of(const ColouredStage& stage, BatchRange some) {
     const std::vector<std::uint32_t>& others = stage.step.coloured.others;
@@ -139,27 +153,42 @@ inline ConstraintRows<MotionOfChanges> others_of(const ColouredStage& stage, Bat
 /// Calls round(batches), general(batches) and others(constraints) for pieces of all batches and
 /// constraints.
 template <class Threads, class Round, class General, class Others>
-void for_all_rows(const ColouredIsland& island, const Threads& threads, const Round& round,
+void for_all_rows(const ColouredGroup& group, const Threads& threads, const Round& round,
                   const General& general, const Others& others) {
-    island.for_colours(threads, LaneCount::kOne, false,
-                       [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
-                           at_work.for_batches(batches.round, 1, round);
-                           at_work.for_batches(batches.general, kManifoldPoints, general);
-                           at_work.for_batches(batches.others, kManifoldPoints, others);
-                       });
+    group.for_colours(threads, LaneCount::kOne, false,
+                      [&](const ColourBatches& batches, const auto& at_work, LaneCount) {
+                          at_work.for_batches(batches.round, 1, round);
+                          at_work.for_batches(batches.general, kManifoldPoints, general);
+                          at_work.for_batches(batches.others, kManifoldPoints, others);
+                      });
 }
 
-/// Multiplies a load's impulses, and what they have changed, by a part.
+/// Multiplies the loads of some islands, and what they have changed, by a part each.
 template <class Threads>
-void leave_part_of_load(const ColouredIsland& island, const Threads& threads, double part) {
-    const ColouredStage& stage = island.stage();
-    const auto left = static_cast<float>(part);
+void leave_part_of_load(const ColouredGroup& group, const Threads& threads,
+                        const PerMember<double>& parts, Members some) {
+    const ColouredStage& stage = group.stage();
+    PerMember<float> left;
+    left.fill(1);
+    for (const int member : some) left[member] = static_cast<float>(parts[member]);
     for_all_rows(
-        island, threads, [&](BatchRange some) { leave_part_of_round(stage, some, left); },
-        [&](BatchRange some) { leave_part_of_general(stage, some, left); },
-        [&](BatchRange some) { others_of(stage, some).leave_part(left); });
-    threads.for_bodies(island.bodies(),
-                       [&](Range bodies) { leave_part_of_changes(stage, bodies, left); });
+        group, threads, [&](BatchRange batches) { leave_part_of_round(stage, batches, left); },
+        [&](BatchRange batches) { leave_part_of_general(stage, batches, left); },
+        [&](BatchRange others) { others_of(stage, others).leave_part(left[0]); });
+    for (const int member : some)
+        threads.for_bodies(group.bodies(member), [&](Range bodies) {
+            leave_part_of_changes(stage, bodies, left[member]);
+        });
+}
+
+/// Calls add(member, item of list, lane) for the lanes of all batches. The list has an item for
+/// every batch.
+template <class Item, class Add>
+void for_lanes_of_members(const std::vector<Batch>& all, BatchRange batches,
+                          const std::vector<Item>& list, const Add& add) {
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k)
+            add(all[i].member[k], list[i], k);
 }
 
 }  // namespace tesserae

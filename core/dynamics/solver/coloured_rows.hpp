@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 
 #include "core/dynamics/solver/conjugate_directions.hpp"
 #include "core/dynamics/solver/solve_island.hpp"
@@ -12,78 +11,96 @@
 
 namespace tesserae {
 
-/// The IslandRows of a coloured island. Contacts are solved in float, eight at a time, and after
-/// them, in each colour, all other constraints, one by one in double.
+/// The IslandRows of a group of coloured islands. Contacts are solved in float, eight at a time,
+/// and after them, in each colour, all other constraints, one by one in double.
 /// Velocities are changes since the sub-step's start, which are added to the state at the end.
 /// Targets are relative to the start's velocities and are computed in double. So neither a body's
 /// place nor its speed costs accuracy. The points of a pair are one item of a colour: its bodies
 /// are read and written once for all of them.
 ///
-/// The colours are the same for any number of threads, and so are the bits.
+/// The colours are the same for any number of threads, and so are the bits. What happens to an
+/// island does not depend on the others of its group.
 /// @tparam Threads   OneThread, or a class that has its functions
 template <class Threads>
 class ColouredRows {
   public:
+    /// @param island   the first of its group
     ColouredRows(const Simulation& simulation, StepData& step, std::size_t island,
                  const Threads& threads, LaneCount lanes = most_lanes())
-        : island_(simulation, step, island), threads_(threads), lanes_(lanes) {}
+        : group_(simulation, step, island), threads_(threads), lanes_(lanes) {}
 
     const Simulation& simulation() const { return stage().simulation; }
     StepData& step() const { return stage().step; }
-    std::size_t island() const { return island_.number(); }
+    Members members() const { return group_.members(); }
+    std::size_t island(int member) const { return group_.island(member); }
 
-    Impact impact() const;
-    Effort effort_of(const Impact& impact) const;
-    bool along_directions() const { return step().islands.conjugates[island()]; }
-    void start(Cause cause);
-    void leave_friction_out() { island_.leave_friction_out(); }
-    double iterate(Pass pass, const Effort& effort);
+    Impact impact(int member) const;
+    Effort effort_of(int member, const Impact& impact) const;
+    bool along_directions() const { return step().islands.conjugates[island(0)]; }
+    void start(Cause cause, Members some);
+    void leave_friction_out(Members some) { group_.leave_friction_out(some); }
+    PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
-    double iterate_along_directions(const Effort& effort, const Instead& instead);
-    double energy() const;
-    LoadWork load() const { return {work(), energy()}; }
-    void leave_part(double part) { leave_part_of_load(island_, threads_, part); }
-    std::array<double, 2> energies() const;
-    void keep_impact_motion();
-    void add_changes();
-    RestitutionSums restitution() const;
-    void leave_part_of_restitution(double part);
-    void keep();
-    void begin_correction();
-    void end_correction();
-    void take_correction_back();
+    PerMember<double> iterate_along_directions(const PerMember<Effort>& efforts, Members some,
+                                               const Instead& instead);
+    double energy(int member) const;
+    LoadWork load(int member) const { return {work()[member], energy(member)}; }
+    void leave_part(const PerMember<double>& parts, Members some) {
+        leave_part_of_load(group_, threads_, parts, some);
+    }
+    std::array<double, 2> energies(int member) const;
+    void keep_impact_motion(Members some);
+    void add_changes(Members some);
+    RestitutionSums restitution(int member) const;
+    void leave_part_of_restitution(int member, double part);
+    void keep(Members some);
+    void begin_correction(Members some);
+    void end_correction(Members some);
+    void take_correction_back(Members some);
 
   private:
-    const ColouredStage& stage() const { return island_.stage(); }
+    using AlongDirections = ConjugateDirections<Threads>;
+    /// The islands that go on along directions, and what is known of each.
+    struct Going {
+        Members islands;
+        PerMember<double> residual, smallest;
+        Members weighed;             ///< islands whose rounding_of_loads() is known
+        PerMember<double> rounding;  ///< [m/s]
+    };
+
+    const ColouredStage& stage() const { return group_.stage(); }
     std::span<const BodyId> bodies_in(Range some) const {
         return {&step().coloured.bodies[some.begin], some.end - some.begin};
     }
-    /// Calls work(stage, bodies) for pieces of the island's bodies.
+    /// Calls work(bodies) for pieces of the bodies of some islands.
     template <class Work>
-    void for_bodies(const Work& work) const {
-        threads_.for_bodies(island_.bodies(), [&](Range some) { work(stage(), some); });
+    void for_bodies(Members some, const Work& work) const {
+        for (const int member : some) threads_.for_bodies(group_.bodies(member), work);
     }
     /// Calls visit(ConstraintRows) for all constraints that are no contacts, on this thread.
     template <class Visit>
     void for_others(const Visit& visit) const {
-        island_.for_colours(OneThread{}, LaneCount::kOne, false,
-                            [&](const ColourBatches& batches, const auto&, LaneCount) {
-                                visit(others_of(stage(), batches.others));
-                            });
+        group_.for_colours(OneThread{}, LaneCount::kOne, false,
+                           [&](const ColourBatches& batches, const auto&, LaneCount) {
+                               visit(others_of(stage(), batches.others));
+                           });
     }
     template <class Directions = NoDirections>
-    double sweep(Sweep sweep, const Directions& directions = {});
-    double work() const;
-    double rounding_of_loads() const;
+    PerMember<double> sweep(Sweep sweep, Members some, const Directions& directions = {});
+    PerMember<double> residuals(double largest) const;
+    Members ends_of(const Turn& turn, const PerMember<Effort>& efforts, AlongDirections& directions,
+                    Going& going) const;
+    PerMember<double> work() const;
+    double rounding_of_loads(int member) const;
 
-    ColouredIsland island_;
+    ColouredGroup group_;
     const Threads& threads_;
     LaneCount lanes_;
 };
 
 template <class Threads>
-Impact ColouredRows<Threads>::impact() const {
-    const std::span<const std::uint32_t> runs = step().islands.runs_in(island());
+Impact ColouredRows<Threads>::impact(int member) const {
+    const std::span<const std::uint32_t> runs = step().islands.runs_in(island(member));
     Impact all;
     for (const Impact& piece : results_of_pieces(threads_, {0, runs.size()}, [&](Range some) {
              return impact_of_runs(simulation(), step(),
@@ -94,55 +111,61 @@ Impact ColouredRows<Threads>::impact() const {
 }
 
 template <class Threads>
-Effort ColouredRows<Threads>::effort_of(const Impact& impact) const {
-    const std::uint32_t contacts = step().islands.size_of(island());
+Effort ColouredRows<Threads>::effort_of(int member, const Impact& impact) const {
+    const std::uint32_t contacts = step().islands.size_of(island(member));
     return impact.returned > 0 && along_directions()
                ? effort_of_bounce(simulation(), contacts, impact.fastest)
                : effort_of_large_impact(simulation(), contacts, impact.fastest);
 }
 
 /// Makes the rows of all contacts, unless an impact has made them before, and applies the impulses
-/// that they start from.
+/// that they start from. Rows are made of all islands at once.
 template <class Threads>
-void ColouredRows<Threads>::start(Cause cause) {
-    island_.begin(cause);
-    for_bodies([](auto... of) { begin_changes(of...); });
-    island_.for_colours(
+void ColouredRows<Threads>::start(Cause cause, Members some) {
+    group_.begin(cause);
+    for (const int member : some)
+        threads_.for_bodies(group_.bodies(member), [&](Range bodies) {
+            begin_changes(stage(), bodies, group_.mass_unit(member));
+        });
+    group_.for_colours(
         threads_, lanes_, false,
         [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
-            at_work.for_batches(batches.others, kManifoldPoints, [&](BatchRange some) {
-                others_of(stage(), some).start(stage().cause);
+            at_work.for_batches(batches.others, kManifoldPoints, [&](BatchRange others) {
+                others_of(stage(), others).start(stage().cause);
             });
-            at_work.for_batches(batches.round, 1,
-                                [&](BatchRange some) { start_round(stage(), some, at_once); });
-            at_work.for_batches(batches.general, kManifoldPoints,
-                                [&](BatchRange some) { start_general(stage(), some, at_once); });
+            at_work.for_batches(batches.round, 1, [&](BatchRange piece) {
+                start_round(stage(), piece, at_once, some);
+            });
+            at_work.for_batches(batches.general, kManifoldPoints, [&](BatchRange piece) {
+                start_general(stage(), piece, at_once, some);
+            });
         });
-    step().has_rows[island()] = 1;
+    for (const int member : some) step().has_rows[island(member)] = 1;
 }
 
-/// Does one sweep over all rows.
-/// @return its residual [m/s]
+/// Does one sweep over all rows of some islands.
+/// @return their residuals [m/s]
 template <class Threads>
 template <class Directions>
-double ColouredRows<Threads>::sweep(Sweep sweep, const Directions& directions) {
+PerMember<double> ColouredRows<Threads>::sweep(Sweep sweep, Members some,
+                                               const Directions& directions) {
     double residual = 0;
-    island_.for_colours(
+    group_.for_colours(
         threads_, lanes_, sweep.backward,
         [&](const ColourBatches& batches, const auto& at_work, LaneCount at_once) {
             const auto round = [&](BatchRange piece) {
-                return directions.sweep_round(piece, sweep, [&](BatchRange some) {
-                    return sweep_round(stage(), some, sweep, at_once);
+                return directions.sweep_round(piece, sweep, some, [&](BatchRange two) {
+                    return sweep_round(stage(), two, sweep, at_once, some);
                 });
             };
             const auto general = [&](BatchRange piece) {
-                return directions.sweep_general(piece, sweep, [&](BatchRange some) {
-                    return sweep_general(stage(), some, sweep, at_once);
+                return directions.sweep_general(piece, sweep, some, [&](BatchRange two) {
+                    return sweep_general(stage(), two, sweep, at_once, some);
                 });
             };
             const auto others = [&](BatchRange piece) {
-                return directions.sweep_others(piece, sweep, [&](BatchRange some) {
-                    return others_of(stage(), some).sweep(sweep, stage().cause);
+                return directions.sweep_others(piece, sweep, [&](BatchRange two) {
+                    return others_of(stage(), two).sweep(sweep, stage().cause);
                 });
             };
             const auto sweep_others = [&] {
@@ -158,55 +181,117 @@ double ColouredRows<Threads>::sweep(Sweep sweep, const Directions& directions) {
             residual = std::max(residual, of_round);
             if (!sweep.backward) sweep_others();
         });
+    return sweep.measured ? residuals(residual) : PerMember<double>{};
+}
+
+/// Returns each island's residual after a sweep that was measured.
+/// @param largest   of all islands
+template <class Threads>
+PerMember<double> ColouredRows<Threads>::residuals(double largest) const {
+    PerMember<double> residual;
+    residual[0] = largest;
+    if (!stage().shares_batches) return residual;
+    residual[0] = 0;
+    const ColouredIslands& coloured = step().coloured;
+    const auto add = [&](int member, const Eight& left, std::size_t k) {
+        residual[member] = std::max<double>(residual[member], left.lane[k]);
+    };
+    group_.for_colours(
+        OneThread{}, LaneCount::kOne, false,
+        [&](const ColourBatches& batches, const auto&, LaneCount) {
+            for_lanes_of_members(coloured.round, batches.round, coloured.round_left, add);
+            for_lanes_of_members(coloured.general, batches.general, coloured.general_left, add);
+        });
     return residual;
 }
 
 template <class Threads>
-double ColouredRows<Threads>::iterate(Pass pass, const Effort& effort) {
-    return tesserae::iterate(pass, effort, [&](Sweep one) { return sweep(one); });
+PerMember<double> ColouredRows<Threads>::iterate(Pass pass, const PerMember<Effort>& efforts,
+                                                 Members some) {
+    return tesserae::iterate(pass, efforts, some,
+                             [&](Sweep one, Members swept) { return sweep(one, swept); });
 }
 
 /// Sweeps along conjugate directions until neither a row's velocity, nor a body's by the next step
 /// along the direction, changes by more than the tolerance, or than the rounding of the loads. The
 /// second condition is for motions of a whole wall, which no row sees.
+/// @param instead   is called for islands whose directions end with a gain of energy
 template <class Threads>
 template <class Instead>
-double ColouredRows<Threads>::iterate_along_directions(const Effort& effort,
-                                                       const Instead& instead) {
-    std::optional<ConjugateDirections<Threads>> directions;
-    double residual = 0, smallest = std::numeric_limits<double>::infinity();
-    std::optional<double> of_loads;
-    const auto rounding = [&] {
-        if (!of_loads) of_loads = effort.enough < 0 ? -1 : rounding_of_loads();
-        return *of_loads;
-    };
-    const auto goes_on = [&](int i) {
-        return i < effort.sweeps || (i < effort.further && directions && directions->holds());
-    };
-    for (int i = 0; goes_on(i); ++i) {
-        Sweep one = sweep_of(Pass::kSolve, effort, i);
+PerMember<double> ColouredRows<Threads>::iterate_along_directions(const PerMember<Effort>& efforts,
+                                                                  Members some,
+                                                                  const Instead& instead) {
+    AlongDirections directions(group_, threads_);
+    Going going = {some, {}, {}, {}, {}};
+    going.smallest.fill(std::numeric_limits<double>::infinity());
+    Members gains;
+    for (int number = 0; going.islands.any(); ++number) {
+        const Turn turn(Pass::kSolve, efforts, going.islands, number);
+        if (!turn.swept().any()) continue;
+        Sweep one = turn.sweep();
         one.adjoint = one.backward;
-        if (one.backward && directions) directions->go_on();
-        if (one.backward && !directions) directions.emplace(island_, threads_);
-        residual = directions ? sweep(one, *directions) : sweep(one);
-        if (one.measured && effort.leads_away(residual, smallest)) break;
-        if (one.backward || !directions || i + 1 == std::max(effort.sweeps, effort.further))
-            continue;
-        const double left = std::max(residual, directions->find());
-        if (effort.is_done(i + 1, left) || (i + 1 >= effort.least && left <= rounding())) break;
+        if (one.backward) {
+            directions.go_on(turn.swept() & directions.begun());
+            directions.begin(turn.swept() - directions.begun());
+        }
+        const PerMember<double> left = directions.begun().any()
+                                           ? sweep(one, turn.swept(), directions)
+                                           : sweep(one, turn.swept());
+        for (const int member : turn.swept())
+            going.residual[member] = turn.measured().has(member) ? left[member] : 0;
+        const Members ends = ends_of(turn, efforts, directions, going);
+        gains = gains | (ends & directions.begun()).where([&](int member) {
+            return going.residual[member] > efforts[member].enough && directions.is_gain(member);
+        });
+        going.islands = going.islands - ends;
     }
-    if (directions && residual > effort.enough && directions->is_gain()) {
-        directions->take_back();
-        instead();
+    if (gains.any()) {
+        directions.take_back(gains);
+        instead(gains);
     }
-    return residual;
+    return going.residual;
 }
 
-/// Returns the residual that float's rounding of the loads leaves: no sweep brings it down [m/s].
+/// Returns the islands that end with this turn along directions.
 template <class Threads>
-double ColouredRows<Threads>::rounding_of_loads() const {
+Members ColouredRows<Threads>::ends_of(const Turn& turn, const PerMember<Effort>& efforts,
+                                       AlongDirections& directions, Going& going) const {
+    Members ends = turn.measured().where([&](int member) {
+        return efforts[member].leads_away(going.residual[member], going.smallest[member]);
+    });
+    const auto most = [&](int member) {
+        return std::max(efforts[member].sweeps, efforts[member].further);
+    };
+    if (!turn.sweep().backward) {
+        const Members goes = ((turn.swept() - ends) & directions.begun()).where([&](int member) {
+            return turn.done(member) != most(member);
+        });
+        const PerMember<double> moves = directions.find(goes);
+        ends = ends | goes.where([&](int member) {
+            const double left = std::max(going.residual[member], moves[member]);
+            const int done = turn.done(member);
+            if (efforts[member].is_done(done, left)) return true;
+            if (efforts[member].enough < 0 || done < efforts[member].least) return false;
+            if (!going.weighed.has(member)) {
+                going.weighed = going.weighed | Members::only(member);
+                going.rounding[member] = rounding_of_loads(member);
+            }
+            return left <= going.rounding[member];
+        });
+    }
+    return ends | turn.swept().where([&](int member) {
+        const int done = turn.done(member);
+        return done >= efforts[member].sweeps &&
+               (done >= efforts[member].further || !directions.holds(member));
+    });
+}
+
+/// Returns the residual that float's rounding of an island's loads leaves: no sweep brings it down
+/// [m/s].
+template <class Threads>
+double ColouredRows<Threads>::rounding_of_loads(int member) const {
     if (stage().cause != Cause::kLoad) return 0;
-    const std::span<const std::uint32_t> runs = step().islands.runs_in(island());
+    const std::span<const std::uint32_t> runs = step().islands.runs_in(island(member));
     double largest = 0;
     for (const double piece : results_of_pieces(threads_, {0, runs.size()}, [&](Range some) {
              return speed_of_loads(simulation(), step(),
@@ -217,9 +302,9 @@ double ColouredRows<Threads>::rounding_of_loads() const {
 }
 
 template <class Threads>
-double ColouredRows<Threads>::energy() const {
-    const std::span<BodySums> sums = island_.body_sums();
-    for_pieces(threads_, island_.bodies(), [&](std::size_t place, Range bodies) {
+double ColouredRows<Threads>::energy(int member) const {
+    const std::span<BodySums> sums = group_.body_sums(member);
+    for_pieces(threads_, group_.bodies(member), [&](std::size_t place, Range bodies) {
         sums[place][0] = energy_of_changes(stage(), bodies);
     });
     double energy = 0;
@@ -228,111 +313,114 @@ double ColouredRows<Threads>::energy() const {
     return energy;
 }
 
-/// Returns the work of the impulses as LoadWork has it [J].
+/// Returns the work of each island's impulses as LoadWork has it [J].
 template <class Threads>
-double ColouredRows<Threads>::work() const {
-    double work = 0;
+PerMember<double> ColouredRows<Threads>::work() const {
+    PerMember<double> work;
+    const auto add = [&](const std::vector<Batch>& all, BatchRange batches, const auto& of_batch) {
+        for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+            const Eight lanes = of_batch(stage(), i);
+            for (std::size_t k = 0; k < kLanes && all[i].points[k] > 0; ++k)
+                work[all[i].member[k]] += lanes.lane[k];
+        }
+    };
+    const ColouredIslands& coloured = step().coloured;
     for_all_rows(
-        island_, OneThread{},
-        [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_round(stage(), i);
-        },
-        [&](BatchRange all) {
-            for (std::uint32_t i = all.begin; i < all.end; ++i)
-                work += load_work_of_general(stage(), i);
-        },
+        group_, OneThread{}, [&](BatchRange all) { add(coloured.round, all, load_work_of_round); },
+        [&](BatchRange all) { add(coloured.general, all, load_work_of_general); },
         [](BatchRange) {});
-    double of_others = 0;
+    for (const int member : members()) work[member] *= group_.mass_unit(member);
     for_others([&](const auto& others) {
-        others.for_all([&](const Constraint& c) { of_others -= c.impulse.dot(c.aim); });
+        others.for_all([&](const Constraint& c) { work[0] -= c.impulse.dot(c.aim); });
     });
-    return stage().mass_unit * work + of_others;
+    return work;
 }
 
 template <class Threads>
-std::array<double, 2> ColouredRows<Threads>::energies() const {
+std::array<double, 2> ColouredRows<Threads>::energies(int member) const {
     std::array<double, 2> sums = {};
     for (const auto& [before, after] :
-         results_of_pieces(threads_, island_.bodies(),
+         results_of_pieces(threads_, group_.bodies(member),
                            [&](Range some) { return energies_of_compression(stage(), some); }))
         sums[0] += before, sums[1] += after;
     return sums;
 }
 
 template <class Threads>
-void ColouredRows<Threads>::keep_impact_motion() {
-    for_bodies([](auto... of) { tesserae::keep_impact_motion(of...); });
+void ColouredRows<Threads>::keep_impact_motion(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::keep_impact_motion(stage(), bodies); });
 }
 
 template <class Threads>
-void ColouredRows<Threads>::add_changes() {
-    for_bodies([](auto... of) { tesserae::add_changes(of...); });
+void ColouredRows<Threads>::add_changes(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::add_changes(stage(), bodies); });
 }
 
 template <class Threads>
-RestitutionSums ColouredRows<Threads>::restitution() const {
+RestitutionSums ColouredRows<Threads>::restitution(int member) const {
     RestitutionSums sums;
     for (const RestitutionSums& piece : results_of_pieces(
-             threads_, island_.bodies(),
+             threads_, group_.bodies(member),
              [&](Range some) { return restitution_of(simulation(), step(), bodies_in(some)); }))
         sums += piece;
     return sums;
 }
 
 template <class Threads>
-void ColouredRows<Threads>::leave_part_of_restitution(double part) {
-    threads_.for_bodies(island_.bodies(), [&](Range some) {
+void ColouredRows<Threads>::leave_part_of_restitution(int member, double part) {
+    threads_.for_bodies(group_.bodies(member), [&](Range some) {
         tesserae::leave_part_of_restitution(simulation(), step(), bodies_in(some), part);
     });
 }
 
 template <class Threads>
-void ColouredRows<Threads>::keep() {
+void ColouredRows<Threads>::keep(Members some) {
     for_all_rows(
-        island_, threads_, [&](BatchRange some) { keep_round(stage(), some); },
-        [&](BatchRange some) { keep_general(stage(), some); },
-        [&](BatchRange some) { others_of(stage(), some).keep(stage().cause); });
+        group_, threads_, [&](BatchRange batches) { keep_round(stage(), batches, some); },
+        [&](BatchRange batches) { keep_general(stage(), batches, some); },
+        [&](BatchRange others) { others_of(stage(), others).keep(stage().cause); });
 }
 
 template <class Threads>
-void ColouredRows<Threads>::begin_correction() {
-    for_bodies([](auto... of) { tesserae::begin_correction(of...); });
+void ColouredRows<Threads>::begin_correction(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::begin_correction(stage(), bodies); });
 }
 
 template <class Threads>
-void ColouredRows<Threads>::end_correction() {
-    for_bodies([](auto... of) { tesserae::end_correction(of...); });
+void ColouredRows<Threads>::end_correction(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::end_correction(stage(), bodies); });
 }
 
 template <class Threads>
-void ColouredRows<Threads>::take_correction_back() {
-    for_bodies([](auto... of) { tesserae::take_correction_back(of...); });
+void ColouredRows<Threads>::take_correction_back(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::take_correction_back(stage(), bodies); });
 }
 
-/// Solves the impacts of a coloured island, see solve_impact().
+// The functions of solver.hpp for the group of coloured islands that an island leads. They do
+// nothing for the other islands of a group.
+
 template <class Threads>
 void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = most_lanes()) {
+    if (!step.coloured.leads(step.islands.coloured[island])) return;
     ColouredRows rows(simulation, step, island, threads, lanes);
     solve_impact(rows);
 }
 
-/// Solves the load of a coloured island, see solve_island().
 template <class Threads>
 void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
                            const Threads& threads, LaneCount lanes = most_lanes()) {
-    begin_load(simulation, step, island);
+    if (!step.coloured.leads(step.islands.coloured[island])) return;
     ColouredRows rows(simulation, step, island, threads, lanes);
     solve_load(rows);
 }
 
-/// Drops the position correction of a coloured island, see drop_correction().
 template <class Threads>
 void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
                               const Threads& threads) {
-    if (step.corrected[island] != Correction::kNone)
-        ColouredRows(simulation, step, island, threads).take_correction_back();
+    if (!step.coloured.leads(step.islands.coloured[island])) return;
+    ColouredRows rows(simulation, step, island, threads);
+    drop_correction(rows);
 }
 
 }  // namespace tesserae

@@ -28,35 +28,44 @@ template <std::size_t kTangents, class Visit>
         for (std::size_t i = 0; i < kTangents; ++i)
             visit(impulses.tangent[row][i], lasts.tangent[row][i], directions.tangent[row][i]);
 }
+/// Calls visit(impulse, last, direction) for all eights of impulses of a batch.
 template <class Visit>
-void visit_round(ColouredIslands& coloured, BatchRange batches, const Visit& visit) {
-    visit_rows(coloured.round_impulses, coloured.last_round, coloured.round_direction,
-               batches.begin, batches.end - batches.begin, visit);
+[[gnu::always_inline]] inline void visit_round(ColouredIslands& coloured, std::uint32_t batch,
+                                               const Visit& visit) {
+    visit_rows(coloured.round_impulses, coloured.last_round, coloured.round_direction, batch, 1,
+               visit);
 }
 template <class Visit>
-void visit_general(ColouredIslands& coloured, BatchRange batches, const Visit& visit) {
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-        visit_rows(coloured.impulses, coloured.last_general, coloured.general_direction,
-                   coloured.general[i].row, coloured.general[i].rows, visit);
+[[gnu::always_inline]] inline void visit_general(ColouredIslands& coloured, std::uint32_t batch,
+                                                 const Visit& visit) {
+    visit_rows(coloured.impulses, coloured.last_general, coloured.general_direction,
+               coloured.general[batch].row, coloured.general[batch].rows, visit);
 }
 
-/// Keeps impulses where they are, without a direction.
-constexpr auto begin = [](const Eight& impulse, Eight& last, Eight& direction) {
+/// As if all of the impulses of some islands had come since, without a direction.
+auto begin_at_none(const Batch& batch, Members some) {
+    const Float8 begins = kAll.load(lanes_of(batch, some));
+    return [=](const Eight&, Eight& last, Eight& direction) {
+        const Float8 none{};
+        kAll.store(begins > none ? none : kAll.load(last), last);
+        kAll.store(begins > none ? none : kAll.load(direction), direction);
+    };
+}
+/// Impulses stay where they are, without a direction.
+constexpr auto stay = [](const Eight& impulse, Eight& last, Eight& direction) {
     last = impulse;
     direction = {};
 };
-/// As if all of the impulses had come since, without a direction.
-constexpr auto begin_at_none = [](const Eight&, Eight& last, Eight& direction) {
-    last = {};
-    direction = {};
-};
-/// Impulses go from where they were along the new direction.
-auto go(float carried, float length) {
-    return [carried, length](Eight& impulse, Eight& last, Eight& direction) {
-        const Float8 from = kAll.load(last);
-        const Float8 along = (kAll.load(impulse) - from) + carried * kAll.load(direction);
-        const Float8 here = from + length * along;
-        kAll.store(along, direction);
+/// Impulses go from where they were along the new direction, or stay where they are.
+auto go_or_stay(const Batch& batch, const DirectionSteps& steps) {
+    const Float8 carried = kAll.load(of_lanes(batch, steps.carried));
+    const Float8 length = kAll.load(of_lanes(batch, steps.length));
+    const Float8 goes = kAll.load(lanes_of(batch, steps.along));
+    return [=](Eight& impulse, Eight& last, Eight& direction) {
+        const Float8 now = kAll.load(impulse), from = kAll.load(last), none{};
+        const Float8 along = (now - from) + carried * kAll.load(direction);
+        const Float8 here = goes > none ? from + length * along : now;
+        kAll.store(goes > none ? along : none, direction);
         kAll.store(here, impulse);
         kAll.store(here, last);
     };
@@ -80,6 +89,12 @@ class Work {
         of_all_ = simd::fused(now, velocity, of_all_);
     }
     std::array<double, 2> sums() const { return {sum_of(of_step_), sum_of(of_all_)}; }
+    std::array<Eight, 2> of_lanes() const {
+        std::array<Eight, 2> sums;
+        kAll.store(of_step_, sums[0]);
+        kAll.store(of_all_, sums[1]);
+        return sums;
+    }
 
   private:
     static double sum_of(const Float8& lanes) {
@@ -90,7 +105,8 @@ class Work {
 };
 
 /// Of a batch of any bodies.
-Work work_of_general(const ColouredIslands& coloured, std::uint32_t index) {
+[[gnu::always_inline]] inline Work work_of_general(const ColouredIslands& coloured,
+                                                   std::uint32_t index) {
     const auto& [normal, tangent] = coloured.impulses;
     const RowImpulses<3>& last = coloured.last_general;
     const Batch& batch = coloured.general[index];
@@ -189,7 +205,7 @@ bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b) {
     return !needs.rolling || rolling_arm_of(simulation, a, b) == 0;
 }
 
-BodySums weigh_warm_start(const ColouredStage& stage, Range bodies) {
+BodySums weigh_warm_start(const ColouredStage& stage, Range bodies, double mass_unit) {
     ColouredIslands& coloured = stage.step.coloured;
     Double4 twice_energy{};
     double fallen = 0;
@@ -202,20 +218,24 @@ BodySums weigh_warm_start(const ColouredStage& stage, Range bodies) {
                 coloured.inertias[i] = {};
             else
                 put_columns(without_specks(world_map(type.inertia, type, stage.step.rotor[id])),
-                            1 / stage.mass_unit, coloured.inertias[i]);
+                            1 / mass_unit, coloured.inertias[i]);
         }
         twice_energy += twice_energy_of(coloured, i, load(coloured.changes[i]));
-        fallen += 0.5 * std::abs(type.gravity_scale) * type.mass / stage.mass_unit * kick_squared;
+        fallen += 0.5 * std::abs(type.gravity_scale) * type.mass / mass_unit * kick_squared;
     }
     return {0.5 * total_of(twice_energy), fallen};
 }
 
-void begin_warm_start_round(const ColouredStage& stage, BatchRange batches) {
-    visit_round(stage.step.coloured, batches, begin_at_none);
+void begin_warm_start_round(const ColouredStage& stage, BatchRange batches, Members some) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        visit_round(coloured, i, begin_at_none(coloured.round[i], some));
 }
 
-void begin_warm_start_general(const ColouredStage& stage, BatchRange batches) {
-    visit_general(stage.step.coloured, batches, begin_at_none);
+void begin_warm_start_general(const ColouredStage& stage, BatchRange batches, Members some) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        visit_general(coloured, i, begin_at_none(coloured.general[i], some));
 }
 
 void begin_warm_start_others(const ColouredStage& stage, BatchRange some) {
@@ -239,21 +259,6 @@ void begin_directions(const ColouredStage& stage, Range bodies) {
         store(load(coloured.changes[i]), coloured.last_changes[i]);
         coloured.direction[i] = {};
     }
-}
-
-void begin_round_directions(const ColouredStage& stage, BatchRange batches) {
-    visit_round(stage.step.coloured, batches, begin);
-}
-
-void begin_general_directions(const ColouredStage& stage, BatchRange batches) {
-    visit_general(stage.step.coloured, batches, begin);
-}
-
-void begin_others_directions(const ColouredStage& stage, BatchRange some) {
-    visit_others(stage, some, [](Constraint& c, std::uint32_t) {
-        c.last_impulse = c.impulse;
-        c.direction.setZero(c.size);
-    });
 }
 
 BodySums weigh_step(const ColouredStage& stage, Range bodies) {
@@ -280,19 +285,26 @@ void weigh_round_step(const ColouredStage& stage, BatchRange batches) {
             for (std::size_t k = 0; k < 4; ++k)
                 work.add(tangent[i][k], last.tangent[i][k],
                          kAll.load(coloured.round_friction[i].slip[k]));
-        coloured.round_work[i] = work.sums();
+        if (stage.shares_batches)
+            coloured.round_lane_work[i] = work.of_lanes();
+        else
+            coloured.round_work[i] = work.sums();
     }
 }
 
 void weigh_general_step(const ColouredStage& stage, BatchRange batches) {
     ColouredIslands& coloured = stage.step.coloured;
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-        coloured.general_work[i] = work_of_general(coloured, i).sums();
+    if (stage.shares_batches)
+        for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+            coloured.general_lane_work[i] = work_of_general(coloured, i).of_lanes();
+    else
+        for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+            coloured.general_work[i] = work_of_general(coloured, i).sums();
 }
 
 void weigh_others_step(const ColouredStage& stage, BatchRange some) {
     visit_others(stage, some, [&](const Constraint& c, std::uint32_t i) {
-        const double unit = 1 / stage.mass_unit;
+        const double unit = 1 / stage.mass_unit(0);
         stage.step.coloured.others_work[i] = {unit * (c.impulse - c.last_impulse).dot(c.aim),
                                               -unit * c.impulse.dot(c.aim)};
     });
@@ -321,18 +333,32 @@ void go_along(const ColouredStage& stage, Range bodies, float length) {
     }
 }
 
-void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length) {
-    visit_round(stage.step.coloured, batches, go(carried, length));
+void go_along_round(const ColouredStage& stage, BatchRange batches, const DirectionSteps& steps) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        if ((coloured.round[i].members & steps.along).any())
+            visit_round(coloured, i, go_or_stay(coloured.round[i], steps));
+        else
+            visit_round(coloured, i, stay);
 }
 
-void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length) {
-    visit_general(stage.step.coloured, batches, go(carried, length));
+void go_along_general(const ColouredStage& stage, BatchRange batches, const DirectionSteps& steps) {
+    ColouredIslands& coloured = stage.step.coloured;
+    for (std::uint32_t i = batches.begin; i < batches.end; ++i)
+        if ((coloured.general[i].members & steps.along).any())
+            visit_general(coloured, i, go_or_stay(coloured.general[i], steps));
+        else
+            visit_general(coloured, i, stay);
 }
 
-void go_along_others(const ColouredStage& stage, BatchRange some, float carried, float length) {
+void go_along_others(const ColouredStage& stage, BatchRange some, const DirectionSteps& steps) {
     visit_others(stage, some, [&](Constraint& c, std::uint32_t) {
-        c.direction = (c.impulse - c.last_impulse) + carried * c.direction;
-        c.impulse = c.last_impulse + length * c.direction;
+        if (steps.along.any()) {
+            c.direction = (c.impulse - c.last_impulse) + steps.carried[0] * c.direction;
+            c.impulse = c.last_impulse + steps.length[0] * c.direction;
+        } else {
+            c.direction.setZero(c.size);
+        }
         c.last_impulse = c.impulse;
     });
 }

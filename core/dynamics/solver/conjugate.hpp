@@ -30,11 +30,13 @@ namespace tesserae {
 /// bodies that roll have all of it that is allowed, so that no direction leads anywhere.
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 
-/// Returns two energies of the bodies: of the changes by the warm start, and of those by gravity.
-BodySums weigh_warm_start(const ColouredStage& stage, Range bodies);
+/// Returns two energies of an island's bodies: of the changes by the warm start, and of those by
+/// gravity.
+/// @param mass_unit   [kg]
+BodySums weigh_warm_start(const ColouredStage& stage, Range bodies, double mass_unit);
 /// Prepares the rows so that the next weighing counts the warm start as one step from no impulses.
-void begin_warm_start_round(const ColouredStage& stage, BatchRange batches);
-void begin_warm_start_general(const ColouredStage& stage, BatchRange batches);
+void begin_warm_start_round(const ColouredStage& stage, BatchRange batches, Members some);
+void begin_warm_start_general(const ColouredStage& stage, BatchRange batches, Members some);
 void begin_warm_start_others(const ColouredStage& stage, BatchRange some);
 
 /// Moves the warm start from the bodies' changes to a record of its own. The changes that remain
@@ -45,13 +47,10 @@ void take_warm_start(const ColouredStage& stage, Range bodies);
 
 /// Starts the next pair of sweeps where the last one ended, without a direction.
 void begin_directions(const ColouredStage& stage, Range bodies);
-void begin_round_directions(const ColouredStage& stage, BatchRange batches);
-void begin_general_directions(const ColouredStage& stage, BatchRange batches);
-void begin_others_directions(const ColouredStage& stage, BatchRange some);
 
 /// Weighs a pair of sweeps once it has ended. Returns the bodies' part of r.z, r.p_last and the
 /// energy; the functions for rows write each batch's part of r.z and the energy to round_work,
-/// general_work and others_work.
+/// general_work and others_work, or each lane's where islands share batches.
 BodySums weigh_step(const ColouredStage& stage, Range bodies);
 void weigh_round_step(const ColouredStage& stage, BatchRange batches);
 void weigh_general_step(const ColouredStage& stage, BatchRange batches);
@@ -62,11 +61,18 @@ void weigh_others_step(const ColouredStage& stage, BatchRange some);
 /// @return p.Ap and the largest square of a change of velocity
 BodySums find_direction(const ColouredStage& stage, Range bodies, float carried);
 
+/// Where each island's next pair of sweeps starts: at x + a p if it has a direction, else where the
+/// last one ended.
+struct DirectionSteps {
+    PerMember<float> carried, length;  ///< b and a
+    Members along;                     ///< islands that have a direction
+};
 /// Starts the next pair of sweeps at x + a p.
 /// @param length   a
 void go_along(const ColouredStage& stage, Range bodies, float length);
-void go_along_round(const ColouredStage& stage, BatchRange batches, float carried, float length);
-void go_along_general(const ColouredStage& stage, BatchRange batches, float carried, float length);
-void go_along_others(const ColouredStage& stage, BatchRange some, float carried, float length);
+/// Starts the next pair of sweeps.
+void go_along_round(const ColouredStage& stage, BatchRange batches, const DirectionSteps& steps);
+void go_along_general(const ColouredStage& stage, BatchRange batches, const DirectionSteps& steps);
+void go_along_others(const ColouredStage& stage, BatchRange some, const DirectionSteps& steps);
 
 }  // namespace tesserae

@@ -13,109 +13,51 @@
 
 namespace tesserae {
 
-/// The state of a load that is solved by pairs of sweeps along conjugate directions, see
-/// conjugate.hpp.
-template <class Threads>
-class ConjugateDirections {
+/// The directions of one island's load or impact, see conjugate.hpp.
+class IslandDirections {
   public:
-    ConjugateDirections(const ColouredIsland& island, const Threads& threads)
-        : island_(island), threads_(threads) {
-        const ColouredStage& stage = island.stage();
-        double weight = 0;
-        for (const BodySums& piece : sums_of([](auto... of) { return weigh_warm_start(of...); }))
-            warm_start_ += piece[0], weight += piece[1];
-        if (warm_start_ > kWarmStartWeight * weight) leave_part_of_warm_start();
-        rounding_ = kFloatStep * kFloatStep * warm_start_;
-        for_all_rows(
-            island, threads, [&](BatchRange some) { take_warm_start_round(stage, some); },
-            [&](BatchRange some) { take_warm_start_general(stage, some); },
-            [&](BatchRange some) { others_of(stage, some).take_warm_start(); });
-        for_bodies([](auto... of) { add_changes(of...); });
-        for_bodies([](auto... of) { take_warm_start(of...); });
-        for_bodies([](auto... of) { begin_directions(of...); });
-    }
-    /// Finds the direction after a pair of sweeps.
-    /// @return the largest change of a body's velocity by a step along it [m/s]
-    double find() {
-        BodySums sums = weigh();  // r.z, r.p_last and the energy
+    /// The rows' part of r.z, r.p and the energy.
+    struct RowSums {
+        double of_step = 0, of_all = 0;
+    };
+
+    IslandDirections() = default;
+    /// @param warm_start   energy of the warm start, see weigh_warm_start()
+    explicit IslandDirections(double warm_start)
+        : warm_start_(warm_start), rounding_(kFloatStep * kFloatStep * warm_start) {}
+
+    /// Weighs a pair of sweeps, by which what the next direction carries of the last is known.
+    /// @param sums   the bodies' part of r.z, r.p_last and the energy
+    void weigh(const BodySums& sums, const RowSums& rows) {
         rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
-        const auto [of_step, of_all] = work();
-        sums[0] += of_step, sums[1] += of_direction_, sums[2] += of_all;
-        const double ratio = last_slope_ > 0 ? sums[0] / last_slope_ : 0;
-        look_for_rise(ratio, sums[0], sums[2]);
+        slope_ = sums[0] + rows.of_step;
+        of_last_ = sums[1] + of_direction_;
+        const double ratio = last_slope_ > 0 ? slope_ / last_slope_ : 0;
+        look_for_rise(ratio, slope_, sums[2] + rows.of_all);
         carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
-        of_direction_ = of_step + carried_ * of_direction_;
-        double twice_energy = 0, fastest = 0;
-        const auto find = [this](auto... of) { return find_direction(of..., carried_); };
-        for (const BodySums& piece : sums_of(find)) {
-            twice_energy += piece[0];
-            fastest = std::max(fastest, piece[1]);
-        }
-        const double length = (sums[0] + carried_ * sums[1]) / twice_energy;
-        holds_ = plain_ == 0 && length > 1 && sums[0] > rounding_;
-        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
-        slope_ = sums[0];
-        return length_ * std::sqrt(fastest);
+        of_direction_ = rows.of_step + carried_ * of_direction_;
     }
-    /// Returns whether the next pair of sweeps begins with a step along the direction.
-    bool holds() const { return holds_; }
+    /// Finds the length of the step along the new direction.
+    /// @param twice_energy   p.Ap
+    void find_length(double twice_energy) {
+        const double length = (slope_ + carried_ * of_last_) / twice_energy;
+        holds_ = plain_ == 0 && length > 1 && slope_ > rounding_;
+        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
+    }
     /// Begins the next pair of sweeps.
     void go_on() {
         last_slope_ = holds_ ? slope_ : 0;
-        if (holds_) return for_bodies([this](auto... of) { go_along(of..., length_); });
+        if (holds_) return;
         plain_ = std::max(0, plain_ - 1);
         of_direction_ = 0;
         least_slope_ = std::numeric_limits<double>::infinity();
-        for_bodies([](auto... of) { begin_directions(of...); });
     }
 
-    /// Returns, after the last pair, whether all impulses together with the warm start leave more
-    /// energy than none would.
-    bool is_gain() const { return weigh()[2] + work()[1] - warm_start_ > 0; }
-    /// Takes the warm start back: no impulses have acted then.
-    void take_back() const {
-        for_bodies([](auto... of) { take_warm_start_back(of...); });
-    }
-
-    // The rows' part of a pair of sweeps. It is done batch by batch as they are swept, while they
-    // are in the caches.
-    /// Sweeps batches of round pairs, with their part of the directions.
-    /// @param work   sweeps batches and returns their residual
-    template <class Work>
-    double sweep_round(BatchRange batches, Sweep sweep, const Work& work) const {
-        const ColouredStage& stage = island_.stage();
-        const std::vector<Batch>& all = stage.step.coloured.round;
-        return largest_of_twos(all, batches, sweep.backward, [&](BatchRange some) {
-            if (sweep.backward && holds_) go_along_round(stage, some, carried_, length_);
-            if (sweep.backward && !holds_) begin_round_directions(stage, some);
-            const double left = work(some);
-            if (!sweep.backward) weigh_round_step(stage, some);
-            return left;
-        });
-    }
-    /// Sweeps batches of all other pairs, with their part of the directions.
-    template <class Work>
-    double sweep_general(BatchRange batches, Sweep sweep, const Work& work) const {
-        const ColouredStage& stage = island_.stage();
-        const std::vector<Batch>& all = stage.step.coloured.general;
-        return largest_of_twos(all, batches, sweep.backward, [&](BatchRange some) {
-            if (sweep.backward && holds_) go_along_general(stage, some, carried_, length_);
-            if (sweep.backward && !holds_) begin_general_directions(stage, some);
-            const double left = work(some);
-            if (!sweep.backward) weigh_general_step(stage, some);
-            return left;
-        });
-    }
-    /// Sweeps constraints that are no contacts, with their part of the directions.
-    template <class Work>
-    double sweep_others(BatchRange some, Sweep sweep, const Work& work) const {
-        const ColouredStage& stage = island_.stage();
-        if (sweep.backward && holds_) go_along_others(stage, some, carried_, length_);
-        if (sweep.backward && !holds_) begin_others_directions(stage, some);
-        const double left = work(some);
-        if (!sweep.backward) weigh_others_step(stage, some);
-        return left;
-    }
+    /// Returns whether the next pair of sweeps begins with a step along the direction.
+    bool holds() const { return holds_; }
+    float carried() const { return carried_; }
+    float length() const { return length_; }
+    double warm_start() const { return warm_start_; }
 
   private:
     /// The relative change that counts as float's rounding, as a part of the warm start or of all
@@ -127,35 +69,6 @@ class ConjugateDirections {
     /// directions are given up.
     static constexpr double kMostRisen = 16;
 
-    /// Cuts a warm start that is far more than weights: it may have ended an impact and would
-    /// replay it. The part that takes the most energy stays.
-    void leave_part_of_warm_start() {
-        const ColouredStage& stage = island_.stage();
-        for_all_rows(
-            island_, threads_,
-            [&](BatchRange some) {
-                begin_warm_start_round(stage, some);
-                weigh_round_step(stage, some);
-            },
-            [&](BatchRange some) {
-                begin_warm_start_general(stage, some);
-                weigh_general_step(stage, some);
-            },
-            [&](BatchRange some) {
-                begin_warm_start_others(stage, some);
-                weigh_others_step(stage, some);
-            });
-        const double part = LoadWork{-work()[0], 2 * warm_start_}.best_part();
-        leave_part_of_load(island_, threads_, part);
-        warm_start_ *= part * part;
-    }
-    /// Returns the bodies' part of r.z, r.p_last and the energy of a pair of sweeps.
-    BodySums weigh() const {
-        BodySums sums = {};
-        for (const BodySums& piece : sums_of([](auto... of) { return weigh_step(of...); }))
-            for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
-        return sums;
-    }
     /// Gives directions up for a while after a step that led away from the solution.
     /// @param ratio   r.z divided by r.z before the step
     void look_for_rise(double ratio, double slope, double energy) {
@@ -167,59 +80,240 @@ class ConjugateDirections {
         last_energy_ = energy;
         least_slope_ = std::min(least_slope_, slope);
     }
-    /// Calls work(stage, bodies) for pieces of the island's bodies.
-    template <class Work>
-    void for_bodies(const Work& work) const {
-        threads_.for_bodies(island_.bodies(), [&](Range bodies) { work(island_.stage(), bodies); });
-    }
-    /// Returns the results of work(stage, bodies) for the pieces of the bodies, in their order.
-    template <class Work>
-    std::span<const BodySums> sums_of(const Work& work) const {
-        const std::span<BodySums> sums = island_.body_sums();
-        for_pieces(threads_, island_.bodies(), [&](std::size_t place, Range bodies) {
-            sums[place] = work(island_.stage(), bodies);
+
+    double warm_start_ = 0;
+    double rounding_ = 0;                                           ///< rounding of a slope
+    double slope_ = 0, last_slope_ = 0;                             ///< r.z
+    double least_slope_ = std::numeric_limits<double>::infinity();  ///< since a first direction
+    double of_last_ = 0;                                            ///< r.p_last
+    double of_direction_ = 0;                                       ///< rows' part of r.p
+    double last_energy_ = 0;                                        ///< at the end of the last pair
+    int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
+    float carried_ = 0, length_ = 1;
+    bool holds_ = false;
+};
+
+/// Pairs of sweeps along conjugate directions over islands that are solved side by side.
+template <class Threads>
+class ConjugateDirections {
+  public:
+    ConjugateDirections(const ColouredGroup& group, const Threads& threads)
+        : group_(group), threads_(threads) {}
+
+    /// Returns the islands that have begun.
+    Members begun() const { return begun_; }
+    /// Begins with some islands: takes their warm starts.
+    void begin(Members some) {
+        if (!some.any()) return;
+        begun_ = begun_ | some;
+        const ColouredStage& stage = group_.stage();
+        PerMember<double> warm_start;
+        const Members heavy = some.where([&](int member) {
+            double weight = 0;
+            const double unit = group_.mass_unit(member);
+            for (const BodySums& piece :
+                 sums_of(member, [&](auto... of) { return weigh_warm_start(stage, of..., unit); }))
+                warm_start[member] += piece[0], weight += piece[1];
+            return warm_start[member] > kWarmStartWeight * weight;
         });
+        if (heavy.any()) leave_part_of_warm_starts(warm_start, heavy);
+        for_all_rows(
+            group_, threads_,
+            [&](BatchRange batches) { take_warm_start_round(stage, batches, some); },
+            [&](BatchRange batches) { take_warm_start_general(stage, batches, some); },
+            [&](BatchRange others) { others_of(stage, others).take_warm_start(); });
+        for (const int member : some) {
+            of_[member] = IslandDirections(warm_start[member]);
+            for_bodies(member, [&](Range bodies) { add_changes(stage, bodies); });
+            for_bodies(member, [&](Range bodies) { take_warm_start(stage, bodies); });
+            for_bodies(member, [&](Range bodies) { begin_directions(stage, bodies); });
+        }
+    }
+    /// Finds the directions after a pair of sweeps.
+    /// @return the largest change of a body's velocity by a step along them [m/s]
+    PerMember<double> find(Members some) {
+        PerMember<double> largest;
+        if (!some.any()) return largest;
+        const PerMember<RowSums> rows = sums_of_rows();
+        for (const int member : some) largest[member] = find(member, rows[member]);
+        return largest;
+    }
+    /// Returns whether an island's next pair of sweeps begins with a step along the direction.
+    bool holds(int member) const { return begun_.has(member) && of_[member].holds(); }
+    /// Begins the next pair of sweeps of some islands that have begun.
+    void go_on(Members some) {
+        const ColouredStage& stage = group_.stage();
+        steps_.along = some.where([&](int member) { return of_[member].holds(); });
+        for (const int member : some) {
+            IslandDirections& of = of_[member];
+            steps_.carried[member] = of.carried(), steps_.length[member] = of.length();
+            for_bodies(member, [&](Range bodies) {
+                if (of.holds())
+                    go_along(stage, bodies, of.length());
+                else
+                    begin_directions(stage, bodies);
+            });
+            of.go_on();
+        }
+    }
+
+    /// Returns, after the last pair, whether all impulses together with the warm start leave more
+    /// energy than none would.
+    bool is_gain(int member) const {
+        return weigh(member)[2] + sums_of_rows()[member].of_all - of_[member].warm_start() > 0;
+    }
+    /// Takes the warm start back: no impulses have acted then.
+    void take_back(Members some) const {
+        for (const int member : some)
+            for_bodies(member, [&](Range bodies) { take_warm_start_back(group_.stage(), bodies); });
+    }
+
+    // The rows' part of a pair of sweeps. It is done batch by batch as they are swept, while they
+    // are in the caches.
+    /// Sweeps batches of round pairs of some islands, with their part of the directions.
+    /// @param work   sweeps batches and returns their residual
+    template <class Work>
+    double sweep_round(BatchRange batches, Sweep sweep, Members some, const Work& work) const {
+        const ColouredStage& stage = group_.stage();
+        const std::vector<Batch>& all = stage.step.coloured.round;
+        return largest_of_twos(all, batches, sweep.backward, some, [&](BatchRange two) {
+            if (sweep.backward) go_along_round(stage, two, steps_);
+            const double left = work(two);
+            if (!sweep.backward) weigh_round_step(stage, two);
+            return left;
+        });
+    }
+    /// Sweeps batches of all other pairs, with their part of the directions.
+    template <class Work>
+    double sweep_general(BatchRange batches, Sweep sweep, Members some, const Work& work) const {
+        const ColouredStage& stage = group_.stage();
+        const std::vector<Batch>& all = stage.step.coloured.general;
+        return largest_of_twos(all, batches, sweep.backward, some, [&](BatchRange two) {
+            if (sweep.backward) go_along_general(stage, two, steps_);
+            const double left = work(two);
+            if (!sweep.backward) weigh_general_step(stage, two);
+            return left;
+        });
+    }
+    /// Sweeps constraints that are no contacts, with their part of the directions.
+    template <class Work>
+    double sweep_others(BatchRange others, Sweep sweep, const Work& work) const {
+        const ColouredStage& stage = group_.stage();
+        if (sweep.backward) go_along_others(stage, others, steps_);
+        const double left = work(others);
+        if (!sweep.backward) weigh_others_step(stage, others);
+        return left;
+    }
+
+  private:
+    using RowSums = IslandDirections::RowSums;
+
+    double find(int member, const RowSums& rows) {
+        IslandDirections& of = of_[member];
+        of.weigh(weigh(member), rows);
+        double twice_energy = 0, fastest = 0;
+        for (const BodySums& piece : sums_of(member, [&](Range bodies) {
+                 return find_direction(group_.stage(), bodies, of.carried());
+             })) {
+            twice_energy += piece[0];
+            fastest = std::max(fastest, piece[1]);
+        }
+        of.find_length(twice_energy);
+        return of.length() * std::sqrt(fastest);
+    }
+    /// Cuts warm starts that are far more than weights: they may have ended an impact and would
+    /// replay it. The part that takes the most energy stays.
+    void leave_part_of_warm_starts(PerMember<double>& warm_start, Members some) {
+        const ColouredStage& stage = group_.stage();
+        for_all_rows(
+            group_, threads_,
+            [&](BatchRange batches) {
+                begin_warm_start_round(stage, batches, some);
+                weigh_round_step(stage, batches);
+            },
+            [&](BatchRange batches) {
+                begin_warm_start_general(stage, batches, some);
+                weigh_general_step(stage, batches);
+            },
+            [&](BatchRange others) {
+                begin_warm_start_others(stage, others);
+                weigh_others_step(stage, others);
+            });
+        const PerMember<RowSums> rows = sums_of_rows();
+        PerMember<double> parts;
+        for (const int member : some) {
+            const double energy = warm_start[member];
+            parts[member] = LoadWork{-rows[member].of_step, 2 * energy}.best_part();
+            warm_start[member] = energy * (parts[member] * parts[member]);
+        }
+        leave_part_of_load(group_, threads_, parts, some);
+    }
+    /// Returns the bodies' part of r.z, r.p_last and the energy of a pair of sweeps.
+    BodySums weigh(int member) const {
+        BodySums sums = {};
+        for (const BodySums& piece :
+             sums_of(member, [&](Range bodies) { return weigh_step(group_.stage(), bodies); }))
+            for (std::size_t k = 0; k < 3; ++k) sums[k] += piece[k];
         return sums;
     }
-    /// Returns the sums of round_work, general_work and others_work. They are added in the order of
-    /// the batches for any number of threads.
-    std::array<double, 2> work() const {
-        const ColouredIslands& coloured = island_.stage().step.coloured;
-        std::array<double, 2> sums = {};
+    /// Calls work(bodies) for pieces of an island's bodies.
+    template <class Work>
+    void for_bodies(int member, const Work& work) const {
+        threads_.for_bodies(group_.bodies(member), work);
+    }
+    /// Returns the results of work(bodies) for the pieces of an island's bodies, in their order.
+    template <class Work>
+    std::span<const BodySums> sums_of(int member, const Work& work) const {
+        const std::span<BodySums> sums = group_.body_sums(member);
+        for_pieces(threads_, group_.bodies(member),
+                   [&](std::size_t place, Range bodies) { sums[place] = work(bodies); });
+        return sums;
+    }
+    /// Returns the sums of the rows of each island. They are added in the order of the batches for
+    /// any number of threads.
+    PerMember<RowSums> sums_of_rows() const {
+        const ColouredIslands& coloured = group_.stage().step.coloured;
+        PerMember<RowSums> sums;
         const auto add = [&](const auto& list, BatchRange batches) {
             for (std::uint32_t i = batches.begin; i < batches.end; ++i)
-                for (std::size_t k = 0; k < 2; ++k) sums[k] += list[i][k];
+                sums[0].of_step += list[i][0], sums[0].of_all += list[i][1];
         };
-        island_.for_colours(OneThread{}, LaneCount::kOne, false,
-                            [&](const ColourBatches& batches, const auto&, LaneCount) {
-                                add(coloured.round_work, batches.round);
-                                add(coloured.general_work, batches.general);
-                                add(coloured.others_work, batches.others);
-                            });
+        const auto add_lane = [&](int member, const std::array<Eight, 2>& lanes, std::size_t k) {
+            sums[member].of_step += lanes[0].lane[k];
+            sums[member].of_all += lanes[1].lane[k];
+        };
+        const bool shares = group_.stage().shares_batches;
+        group_.for_colours(OneThread{}, LaneCount::kOne, false,
+                           [&](const ColourBatches& batches, const auto&, LaneCount) {
+                               if (shares) {
+                                   for_lanes_of_members(coloured.round, batches.round,
+                                                        coloured.round_lane_work, add_lane);
+                                   for_lanes_of_members(coloured.general, batches.general,
+                                                        coloured.general_lane_work, add_lane);
+                               } else {
+                                   add(coloured.round_work, batches.round);
+                                   add(coloured.general_work, batches.general);
+                                   add(coloured.others_work, batches.others);
+                               }
+                           });
         return sums;
     }
 
-    const ColouredIsland& island_;
+    const ColouredGroup& group_;
     const Threads& threads_;
-    double warm_start_ = 0;              ///< energy of the warm start, see weigh_warm_start()
-    double slope_ = 0, last_slope_ = 0;  ///< r.z
-    double least_slope_ = std::numeric_limits<double>::infinity();  ///< since a first direction
-    double of_direction_ = 0;                                       ///< rows' part of r.p
-    double last_energy_ = 0;                                        ///< at the end of the last pair
-    double rounding_ = 0;                                           ///< rounding of a slope
-    int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
-    float carried_ = 0, length_ = 1;
-    bool holds_ = false;  ///< see holds()
+    Members begun_;
+    PerMember<IslandDirections> of_;
+    DirectionSteps steps_;  ///< of the present pair of sweeps
 };
 
 /// Sweeps without conjugate directions.
 struct NoDirections {
     template <class Work>
-    double sweep_round(BatchRange batches, Sweep, const Work& work) const {
+    double sweep_round(BatchRange batches, Sweep, Members, const Work& work) const {
         return work(batches);
     }
     template <class Work>
-    double sweep_general(BatchRange batches, Sweep, const Work& work) const {
+    double sweep_general(BatchRange batches, Sweep, Members, const Work& work) const {
         return work(batches);
     }
     template <class Work>

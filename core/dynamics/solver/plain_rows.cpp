@@ -81,11 +81,11 @@ double velocity_left(const ContactRow& row, const RowChange& change) {
 
 }  // namespace
 
-Impact PlainRows::impact() const {
+Impact PlainRows::impact(int) const {
     return impact_of_runs(simulation_, step_, step_.islands.runs_in(island_));
 }
 
-Effort PlainRows::effort_of(const Impact& impact) const {
+Effort PlainRows::effort_of(int, const Impact& impact) const {
     return step_.awaits[island_] == Awaits::kPatch
                ? effort_of_patch(simulation_, rows().size(), impact.fastest)
                : effort_of_impact(simulation_, rows().size(), impact.fastest);
@@ -173,7 +173,7 @@ void PlainRows::begin_block() {
     others_.for_all([&](Constraint& c) { c.starts_anew = block_ && block_->has_stiffness(); });
 }
 
-void PlainRows::start(Cause cause) {
+void PlainRows::start(Cause cause, Members) {
     cause_ = cause;
     if (bodies_.empty())
         keep_motions();
@@ -216,16 +216,18 @@ double PlainRows::sweep(Sweep sweep) {
     }
 }
 
-double PlainRows::iterate(Pass pass, const Effort& effort) {
+PerMember<double> PlainRows::iterate(Pass pass, const PerMember<Effort>& efforts, Members some) {
     const Needs& needs = simulation_.needs;
     const auto sweep_contacts = [&](Sweep one) {
         if (needs.rolling) return sweep<true, true>(one);
         return needs.turning ? sweep<true, false>(one) : sweep<false, false>(one);
     };
-    return tesserae::iterate(pass, effort, [&](Sweep one) {
+    return tesserae::iterate(pass, efforts, some, [&](Sweep one, Members) {
         const double before = one.backward ? sweep_others(one) : 0;
         const double of_contacts = sweep_contacts(one);
-        return std::max({before, of_contacts, one.backward ? 0 : sweep_others(one)});
+        PerMember<double> residual;
+        residual[0] = std::max({before, of_contacts, one.backward ? 0 : sweep_others(one)});
+        return residual;
     });
 }
 
@@ -270,7 +272,7 @@ void PlainRows::swap_motions() {
 }
 
 /// What impulses have changed of the velocities that they work on is twice their energy.
-LoadWork PlainRows::load() {
+LoadWork PlainRows::load(int) {
     const double after = work();
     swap_motions();
     const double before = work();
@@ -278,7 +280,8 @@ LoadWork PlainRows::load() {
     return {before, after - before + others_.twice_give()};
 }
 
-void PlainRows::leave_part(double part) {
+void PlainRows::leave_part(const PerMember<double>& parts, Members) {
+    const double part = parts[0];
     apply_part_of_contacts(part - 1);
     others_.apply_part(part - 1);
     others_.leave_part(part);
@@ -292,7 +295,7 @@ void PlainRows::leave_part(double part) {
     }
 }
 
-std::array<double, 2> PlainRows::energies() const {
+std::array<double, 2> PlainRows::energies(int) const {
     std::array<double, 2> sums = {};
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         sums[0] += twice_kinetic_energy(simulation_, step_, bodies_[i], motions_[i]);
@@ -302,20 +305,20 @@ std::array<double, 2> PlainRows::energies() const {
     return sums;
 }
 
-void PlainRows::keep_impact_motion() {
+void PlainRows::keep_impact_motion(Members) {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         step_.impact_motion[bodies_[i]] = {motions_[i], motion_of(step_, bodies_[i])};
 }
 
-RestitutionSums PlainRows::restitution() const {
+RestitutionSums PlainRows::restitution(int) const {
     return restitution_of(simulation_, step_, bodies_);
 }
 
-void PlainRows::leave_part_of_restitution(double part) {
+void PlainRows::leave_part_of_restitution(int, double part) {
     tesserae::leave_part_of_restitution(simulation_, step_, bodies_, part);
 }
 
-void PlainRows::keep() {
+void PlainRows::keep(Members) {
     if (block_ && cause_ == Cause::kLoad) block_->end_load(simulation_, step_);
     others_.keep(cause_);
     for_each_row([&](const ContactRow& row, std::size_t contact) {
@@ -329,10 +332,10 @@ void PlainRows::keep() {
     });
 }
 
-void PlainRows::begin_correction() { keep_motions(); }
+void PlainRows::begin_correction(Members) { keep_motions(); }
 
 /// Nothing is turned where turns_correction() says so of any body.
-void PlainRows::end_correction() {
+void PlainRows::end_correction(Members) {
     bool turns = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const Bivector& turning = step_.angular_velocity[bodies_[i]];
@@ -359,7 +362,7 @@ void PlainRows::take_motion_back() {
 }
 
 /// From the rows' impulses to those of the load.
-void PlainRows::take_correction_back() {
+void PlainRows::take_correction_back(Members) {
     if (step_.corrected[island_] == Correction::kMotion) return take_motion_back();
     const bool straight = step_.corrected[island_] == Correction::kStraight;
     if (straight) keep_motions();

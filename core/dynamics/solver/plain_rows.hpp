@@ -25,25 +25,27 @@ class PlainRows {
 
     const Simulation& simulation() const { return simulation_; }
     StepData& step() const { return step_; }
-    std::size_t island() const { return island_; }
+    /// There is one island, number 0 of one.
+    static Members members() { return Members::only(0); }
+    std::size_t island(int) const { return island_; }
 
-    Impact impact() const;
-    Effort effort_of(const Impact& impact) const;
-    void start(Cause cause);
-    void leave_friction_out() { friction_ = false; }
-    double iterate(Pass pass, const Effort& effort);
-    double energy() { return load().energy; }
-    LoadWork load();
-    void leave_part(double part);
-    std::array<double, 2> energies() const;
-    void keep_impact_motion();
-    void add_changes() {}
-    RestitutionSums restitution() const;
-    void leave_part_of_restitution(double part);
-    void keep();
-    void begin_correction();
-    void end_correction();
-    void take_correction_back();
+    Impact impact(int) const;
+    Effort effort_of(int, const Impact& impact) const;
+    void start(Cause cause, Members);
+    void leave_friction_out(Members) { friction_ = false; }
+    PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
+    double energy(int) { return load(0).energy; }
+    LoadWork load(int);
+    void leave_part(const PerMember<double>& parts, Members);
+    std::array<double, 2> energies(int) const;
+    void keep_impact_motion(Members);
+    void add_changes(Members) {}
+    RestitutionSums restitution(int) const;
+    void leave_part_of_restitution(int, double part);
+    void keep(Members);
+    void begin_correction(Members);
+    void end_correction(Members);
+    void take_correction_back(Members);
 
   private:
     std::span<ContactRow> rows() const {

@@ -9,58 +9,62 @@
 #include "core/dynamics/solver/static_loads.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
-// How an island is solved. This one text serves both kinds of rows: PlainRows, one by one in
-// double, and ColouredRows, eight or sixteen at a time in float.
+// How islands are solved. This one text serves both kinds of rows: PlainRows, one by one in
+// double, and ColouredRows, eight or sixteen at a time in float. The rows may be those of several
+// islands, which are solved side by side: `some` are those of which something is done, and nothing
+// that happens to one depends on the others.
 namespace tesserae {
 
-/// The rows of one island, with the functions that the solver needs.
+/// The rows of one island or of several, with the functions that the solver needs.
 template <class Rows>
-concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const Effort& effort, double part,
-                              const Impact& impact) {
+concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMember<Effort>& efforts,
+                              const PerMember<double>& parts, double part, const Impact& impact,
+                              Members some, int member) {
     rows.simulation();
     rows.step();
-    rows.island();
+    { rows.members() } -> std::same_as<Members>;
+    rows.island(member);
     // Returns the largest numbers of the island's contacts, and how long an impact is swept.
-    { rows.impact() } -> std::same_as<Impact>;
-    { rows.effort_of(impact) } -> std::same_as<Effort>;
-    // Makes the rows and applies the impulses that they start from. The bodies first get back the
-    // motion that they had before the first call.
-    rows.start(cause);
+    { rows.impact(member) } -> std::same_as<Impact>;
+    { rows.effort_of(member, impact) } -> std::same_as<Effort>;
+    // Makes the rows and applies the impulses that they start from. The bodies first get back
+    // the motion that they had before the first call, which is for all members.
+    rows.start(cause, some);
     // Turns friction off from the next start() on.
-    rows.leave_friction_out();
-    // Sweeps a pass. Returns the residual of the last sweep [m/s].
-    { rows.iterate(pass, effort) } -> std::same_as<double>;
+    rows.leave_friction_out(some);
+    // Sweeps a pass. Returns the residuals of the last sweeps [m/s].
+    { rows.iterate(pass, efforts, some) } -> std::same_as<PerMember<double>>;
     // Returns what the impulses have done since start(), see LoadWork. load() takes longer.
-    { rows.energy() } -> std::same_as<double>;
-    { rows.load() } -> std::same_as<LoadWork>;
+    { rows.energy(member) } -> std::same_as<double>;
+    { rows.load(member) } -> std::same_as<LoadWork>;
     // Multiplies the impulses and what they have changed by a part.
-    rows.leave_part(part);
+    rows.leave_part(parts, some);
     // Returns an energy, or a multiple of it, before the impulses and after them.
-    { rows.energies() } -> std::same_as<std::array<double, 2>>;
+    { rows.energies(member) } -> std::same_as<std::array<double, 2>>;
     // Writes the bodies' motion before the impact and after the compression to
     // step.impact_motion.
-    rows.keep_impact_motion();
+    rows.keep_impact_motion(some);
     // Gives the bodies the velocities that the impulses have led to.
-    rows.add_changes();
-    { rows.restitution() } -> std::same_as<RestitutionSums>;
-    rows.leave_part_of_restitution(part);
+    rows.add_changes(some);
+    { rows.restitution(member) } -> std::same_as<RestitutionSums>;
+    rows.leave_part_of_restitution(member, part);
     // Writes step.impulses of the contacts, or step.hit after an impact.
-    rows.keep();
-    // Are called before and after the sweeps of a position correction, and once the bodies have
-    // moved by it.
-    rows.begin_correction();
-    rows.end_correction();
-    rows.take_correction_back();
+    rows.keep(some);
+    // Are called before and after the sweeps of a position correction, and once the bodies
+    // have moved by it.
+    rows.begin_correction(some);
+    rows.end_correction(some);
+    rows.take_correction_back(some);
 };
 
-/// Rows that may go along conjugate directions. They have along_directions() and
-/// iterate_along_directions(effort, instead).
+/// Rows that may go along conjugate directions. They have along_directions(), which is the same
+/// for all members, and iterate_along_directions(efforts, some, instead).
 template <class Rows>
 concept HasDirections = requires(Rows& rows) {
     rows.along_directions();
 };
 
-/// Returns whether the rows of this island go along conjugate directions.
+/// Returns whether these rows go along conjugate directions.
 template <IslandRows Rows>
 bool goes_along_directions(const Rows& rows) {
     if constexpr (HasDirections<Rows>)
@@ -70,86 +74,137 @@ bool goes_along_directions(const Rows& rows) {
 }
 
 /// Solves a pass along conjugate directions, or by one sweep after the other.
-/// @param instead   is called if the directions end with a gain of energy, and replaces their
-///                  result
-/// @return the residual of the last sweep [m/s]
+/// @param instead   is called for islands whose directions end with a gain of energy, and replaces
+///                  their result
+/// @return the residuals of the last sweeps [m/s]
 template <IslandRows Rows, class Instead>
-double solve_pass(Rows& rows, bool along_directions, const Effort& effort, const Instead& instead) {
+PerMember<double> solve_pass(Rows& rows, bool along_directions, const PerMember<Effort>& efforts,
+                             Members some, const Instead& instead) {
     if constexpr (HasDirections<Rows>)
-        if (along_directions) return rows.iterate_along_directions(effort, instead);
-    return rows.iterate(Pass::kSolve, effort);
+        if (along_directions) return rows.iterate_along_directions(efforts, some, instead);
+    return rows.iterate(Pass::kSolve, efforts, some);
 }
 
-/// Does the compression of an impact.
+/// The impacts of islands, and how each is solved.
+struct ImpactPlan {
+    PerMember<Impact> impact;
+    PerMember<Effort> efforts;
+    Members hit, along;  ///< islands that have an impact; that go along directions
+};
 template <IslandRows Rows>
-void compress(Rows& rows, bool along_directions, const Effort& effort) {
-    rows.start(Cause::kImpact);
-    solve_pass(rows, along_directions, effort, [&] {
-        rows.start(Cause::kImpact);
-        rows.iterate(Pass::kSolve, effort);
+ImpactPlan plan_impacts(const Rows& rows) {
+    ImpactPlan plan;
+    StepData& step = rows.step();
+    plan.hit = rows.members().where([&](int member) {
+        if (step.awaits[rows.island(member)] == Awaits::kNothing) return false;
+        plan.impact[member] = rows.impact(member);
+        return plan.impact[member].fastest > 0;
     });
+    for (const int member : plan.hit) {
+        step.was_hit[rows.island(member)] = 1;
+        plan.efforts[member] = rows.effort_of(member, plan.impact[member]);
+    }
+    if (goes_along_directions(rows))
+        plan.along = plan.hit.where([&](int member) { return plan.impact[member].returned > 0; });
+    return plan;
 }
 
-/// Does the restitution of an impact, after the compression.
+/// Does the compression of impacts, once they are started.
 template <IslandRows Rows>
-void restitute(Rows& rows, bool along_directions, const Impact& impact, const Effort& effort) {
-    rows.keep_impact_motion();
-    // If all contacts have the same restitution, this is already the result.
-    if (along_directions) rows.leave_part(1 + std::min(1.0, impact.returned));
-    rows.iterate(Pass::kRestitution, effort);
-    rows.add_changes();
-    rows.leave_part_of_restitution(part_of_restitution(rows.restitution(), impact));
+void compress(Rows& rows, const ImpactPlan& plan, Members some) {
+    const auto sweep = [&](Members swept) { rows.iterate(Pass::kSolve, plan.efforts, swept); };
+    sweep(some - plan.along);
+    if ((some & plan.along).any())
+        solve_pass(rows, true, plan.efforts, some & plan.along, [&](Members gains) {
+            rows.start(Cause::kImpact, gains);
+            sweep(gains);
+        });
 }
 
-/// Solves the impacts of an island by any kind of rows, see solve_impact() in solver.hpp.
+/// Does the restitution of impacts, after the compression.
+template <IslandRows Rows>
+void restitute(Rows& rows, const ImpactPlan& plan, Members some) {
+    rows.keep_impact_motion(some);
+    // If all contacts have the same restitution, this is already the result.
+    PerMember<double> parts;
+    for (const int member : some& plan.along)
+        parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
+    if ((some & plan.along).any()) rows.leave_part(parts, some & plan.along);
+    rows.iterate(Pass::kRestitution, plan.efforts, some);
+    rows.add_changes(some);
+    for (const int member : some)
+        rows.leave_part_of_restitution(
+            member, part_of_restitution(rows.restitution(member), plan.impact[member]));
+}
+
+/// Solves the impacts of islands by any kind of rows, see solve_impact() in solver.hpp.
 template <IslandRows Rows>
 void solve_impact(Rows& rows) {
-    const Impact impact = rows.impact();
-    if (impact.fastest == 0) return;
-    rows.step().was_hit[rows.island()] = 1;
-    const Effort effort = rows.effort_of(impact);
-    const bool along_directions = impact.returned > 0 && goes_along_directions(rows);
-    compress(rows, along_directions, effort);
-    if (can_jam(rows.simulation(), impact) && has_jammed(rows.energies())) {
-        rows.leave_friction_out();
-        compress(rows, along_directions, effort);
+    const ImpactPlan plan = plan_impacts(rows);
+    if (!plan.hit.any()) return;
+    rows.start(Cause::kImpact, rows.members());
+    compress(rows, plan, plan.hit);
+    const Members jammed = plan.hit.where([&](int member) {
+        return can_jam(rows.simulation(), plan.impact[member]) && has_jammed(rows.energies(member));
+    });
+    if (jammed.any()) {
+        rows.leave_friction_out(jammed);
+        rows.start(Cause::kImpact, jammed);
+        compress(rows, plan, jammed);
     }
-    if (impact.returned > 0)
-        restitute(rows, along_directions, impact, effort);
-    else
-        rows.add_changes();
-    rows.keep();
+    const Members returning =
+        plan.hit.where([&](int member) { return plan.impact[member].returned > 0; });
+    if (returning.any()) restitute(rows, plan, returning);
+    rows.add_changes(plan.hit - returning);
+    rows.keep(plan.hit);
 }
 
-/// Cuts a warm start, which has acted already, to the part that may stay: see kWarmStartWeight.
+/// Cuts warm starts, which have acted already, to the part that may stay: see kWarmStartWeight.
 template <IslandRows Rows>
-void limit_warm_start(Rows& rows) {
-    const Simulation& simulation = rows.simulation();
-    const double weight = energy_of_fall(simulation, rows.step(), rows.island());
-    if (0.5 * rows.energy() > kWarmStartWeight * weight) rows.leave_part(rows.load().best_part());
+void limit_warm_starts(Rows& rows) {
+    PerMember<double> parts;
+    const Members heavy = rows.members().where([&](int member) {
+        const double weight = energy_of_fall(rows.simulation(), rows.step(), rows.island(member));
+        return 0.5 * rows.energy(member) > kWarmStartWeight * weight;
+    });
+    for (const int member : heavy) parts[member] = rows.load(member).best_part();
+    if (heavy.any()) rows.leave_part(parts, heavy);
 }
 
-/// Replaces a load that gains energy by the part of its warm start that takes the most energy.
+/// Replaces loads that gain energy by the part of their warm start that takes the most energy.
 template <IslandRows Rows>
-void leave_best_of_warm_start(Rows& rows) {
-    rows.start(Cause::kLoad);
-    const LoadWork load = rows.load();
-    if (load.energy > 0) rows.leave_part(load.best_part());
+void leave_best_of_warm_starts(Rows& rows, Members some) {
+    rows.start(Cause::kLoad, some);
+    PerMember<double> parts;
+    const Members gains = some.where([&](int member) {
+        const LoadWork load = rows.load(member);
+        if (load.energy > 0) parts[member] = load.best_part();
+        return load.energy > 0;
+    });
+    if (gains.any()) rows.leave_part(parts, gains);
 }
 
-/// Solves a load from its warm start on.
-/// @return the residual of the last sweep [m/s]
+/// Solves loads from their warm starts on.
+/// @return the residuals of the last sweeps [m/s]
 template <IslandRows Rows>
-double sweep_load(Rows& rows) {
-    rows.start(Cause::kLoad);
-    const Effort effort = effort_of_load(rows.simulation(), rows.step(), rows.island());
+PerMember<double> sweep_loads(Rows& rows) {
+    const Members all = rows.members();
+    rows.start(Cause::kLoad, all);
+    PerMember<Effort> efforts;
+    for (const int member : all)
+        efforts[member] = effort_of_load(rows.simulation(), rows.step(), rows.island(member));
     const bool along_directions = goes_along_directions(rows);
-    if (!along_directions) limit_warm_start(rows);
-    const auto instead = [&] { leave_best_of_warm_start(rows); };
-    const double residual = solve_pass(rows, along_directions, effort, instead);
+    if (!along_directions) limit_warm_starts(rows);
+    const auto instead = [&](Members some) { leave_best_of_warm_starts(rows, some); };
+    const PerMember<double> residual = solve_pass(rows, along_directions, efforts, all, instead);
     // Plain rows keep their load: it gains energy only where there are two or three sweeps.
     if constexpr (HasDirections<Rows>)
-        if (!along_directions && residual > effort.enough && rows.load().is_gain()) instead();
+        if (!along_directions) {
+            const Members gains = all.where([&](int member) {
+                return residual[member] > efforts[member].enough && rows.load(member).is_gain();
+            });
+            if (gains.any()) instead(gains);
+        }
     return residual;
 }
 
@@ -160,22 +215,43 @@ inline void begin_load(const Simulation& simulation, StepData& step, std::size_t
     if (is_corrected(simulation, step, island)) step.corrected[island] = Correction::kAll;
 }
 
-/// Solves the load of an island, and its position correction, by any kind of rows: see
+/// Returns the islands that have a position correction.
+template <IslandRows Rows>
+Members corrected(const Rows& rows) {
+    return rows.members().where([&](int member) {
+        return rows.step().corrected[rows.island(member)] != Correction::kNone;
+    });
+}
+
+/// Solves the loads of islands, and their position corrections, by any kind of rows: see
 /// solve_island() in solver.hpp.
 template <IslandRows Rows>
 void solve_load(Rows& rows) {
     const Simulation& simulation = rows.simulation();
     StepData& step = rows.step();
-    const std::size_t island = rows.island();
-    step.residual[island] = sweep_load(rows);
-    rows.keep();
-    if (step.corrected[island] != Correction::kNone) {
-        rows.begin_correction();
-        rows.iterate(Pass::kCorrection,
-                     effort_of_correction(simulation, step.islands.size_of(island)));
-        rows.end_correction();
+    const Members all = rows.members();
+    for (const int member : all) begin_load(simulation, step, rows.island(member));
+    const PerMember<double> residual = sweep_loads(rows);
+    for (const int member : all) step.residual[rows.island(member)] = residual[member];
+    rows.keep(all);
+    const Members corrects = corrected(rows);
+    if (corrects.any()) {
+        PerMember<Effort> efforts;
+        for (const int member : corrects)
+            efforts[member] =
+                effort_of_correction(simulation, step.islands.size_of(rows.island(member)));
+        rows.begin_correction(corrects);
+        rows.iterate(Pass::kCorrection, efforts, corrects);
+        rows.end_correction(corrects);
     }
-    rows.add_changes();
+    rows.add_changes(all);
+}
+
+/// Drops the position corrections of islands, see drop_correction() in solver.hpp.
+template <IslandRows Rows>
+void drop_correction(Rows& rows) {
+    const Members corrects = corrected(rows);
+    if (corrects.any()) rows.take_correction_back(corrects);
 }
 
 }  // namespace tesserae

@@ -7,7 +7,6 @@
 namespace tesserae {
 
 void solve_impact(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (step.awaits[island] == Awaits::kNothing) return;
     if (step.islands.is_coloured(island))
         return solve_coloured_impact(simulation, step, island, OneThread{});
     PlainRows rows(simulation, step, island);
@@ -17,16 +16,15 @@ void solve_impact(const Simulation& simulation, StepData& step, std::size_t isla
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
         return solve_coloured_island(simulation, step, island, OneThread{});
-    begin_load(simulation, step, island);
     PlainRows rows(simulation, step, island);
     solve_load(rows);
 }
 
 void drop_correction(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (step.corrected[island] == Correction::kNone) return;
     if (step.islands.is_coloured(island))
         return drop_coloured_correction(simulation, step, island, OneThread{});
-    PlainRows(simulation, step, island).take_correction_back();
+    PlainRows rows(simulation, step, island);
+    drop_correction(rows);
 }
 
 }  // namespace tesserae

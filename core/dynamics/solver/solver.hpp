@@ -5,13 +5,16 @@
 
 namespace tesserae {
 
-/// Applies the impacts of one island: bodies that approach each other faster than resting ones do
+// These functions are called for every island. Small coloured islands are solved in groups, with
+// the first of each group; for the others nothing is left to do.
+
+/// Applies the impacts of an island: bodies that approach each other faster than resting ones do
 /// are stopped (compression), then thrown back by their restitution, see part_of_restitution().
 /// Call it before gravity is added. Its impulses are not kept: the next sub-step starts from the
 /// load alone.
 void solve_impact(const Simulation& simulation, StepData& step, std::size_t island);
 
-/// Solves the load of one island by sequential impulses, which are accumulated, clamped and warm
+/// Solves the load of an island by sequential impulses, which are accumulated, clamped and warm
 /// started. It goes through the contacts in the order that Islands gives and changes the velocities
 /// of the island's movable bodies, and of no others. Coloured islands are solved by
 /// solve_coloured_island(). Source: E. Catto, "Iterative dynamics with temporal coherence", 2005;

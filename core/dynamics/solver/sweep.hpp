@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/dynamics/constants.hpp"
+#include "core/dynamics/solver/members.hpp"
 #include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {
@@ -138,17 +139,59 @@ inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
     return {pass, (left % 2 != 0) == (pass == Pass::kSolve), left == 0 || asks};
 }
 
-/// Sweeps until the effort's end.
-/// @param sweep_all   does a Sweep and returns its residual [m/s]
-/// @return the residual of the last iteration [m/s]
+/// A turn of the sweeps over islands that are solved side by side. All sweeps of a turn go the same
+/// way; islands whose first sweep goes forward take no part in the first turn.
+class Turn {
+  public:
+    /// @param islands   those that are not done yet
+    Turn(Pass pass, const PerMember<Effort>& efforts, Members islands, int number)
+        : sweep_{pass, number % 2 == 0, false} {
+        swept_ = islands.where([&](int member) {
+            const Sweep first = sweep_of(pass, efforts[member], 0);
+            done_[member] = number - !first.backward;
+            return done_[member] >= 0;
+        });
+        measured_ = swept_.where(
+            [&](int member) { return sweep_of(pass, efforts[member], done_[member]++).measured; });
+        sweep_.measured = measured_.any();
+    }
+
+    Members swept() const { return swept_; }
+    Members measured() const { return measured_; }
+    const Sweep& sweep() const { return sweep_; }
+    /// Returns the number of an island's sweeps, with that of this turn.
+    int done(int member) const { return done_[member]; }
+
+  private:
+    Sweep sweep_;
+    Members swept_, measured_;
+    PerMember<int> done_;
+};
+
+/// Sweeps islands side by side, each until its effort's end.
+/// @param sweep_all   does a Sweep over some of them and returns its residuals [m/s]
+/// @return the residuals of the last sweeps [m/s]
 template <class SweepAll>
-double iterate(Pass pass, const Effort& effort, const SweepAll& sweep_all) {
-    double residual = 0, smallest = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < effort.sweeps; ++i) {
-        const Sweep sweep = sweep_of(pass, effort, i);
-        residual = sweep_all(sweep);
-        if (!sweep.measured) continue;
-        if (effort.is_done(i + 1, residual) || effort.leads_away(residual, smallest)) break;
+PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members islands,
+                          const SweepAll& sweep_all) {
+    PerMember<double> residual, smallest;
+    smallest.fill(std::numeric_limits<double>::infinity());
+    islands = islands.where([&](int member) { return efforts[member].sweeps > 0; });
+    for (int number = 0; islands.any(); ++number) {
+        const Turn turn(pass, efforts, islands, number);
+        if (!turn.swept().any()) continue;
+        const PerMember<double> left = sweep_all(turn.sweep(), turn.swept());
+        for (const int member : turn.swept()) {
+            const Effort& effort = efforts[member];
+            const int done = turn.done(member);
+            bool ends = done == effort.sweeps;
+            if (turn.measured().has(member)) {
+                residual[member] = left[member];
+                ends = ends || effort.is_done(done, left[member]) ||
+                       effort.leads_away(left[member], smallest[member]);
+            }
+            if (ends) islands = islands - Members::only(member);
+        }
     }
     return residual;
 }

@@ -227,6 +227,18 @@ struct StepData {
     std::vector<std::uint8_t> was_hit;   ///< of every island: there was an impact
     std::vector<Awaits> awaits;          ///< of every island
     std::vector<std::uint32_t> filled;   ///< which of the last kept lists are not empty
+
+    /// Returns the number of contacts and other constraints that are solved with an island: those
+    /// of its group if it is the first of one, none if it is another.
+    std::uint32_t size_of_group(std::size_t island) const {
+        if (!islands.is_coloured(island)) return islands.size_of(island);
+        const std::uint32_t place = islands.coloured[island], group = coloured.group[place];
+        std::uint32_t size = 0;
+        for (std::uint32_t i = place; coloured.leads(place) && i < coloured.first_member[group + 1];
+             ++i)
+            size += islands.size_of(coloured.islands[i]);
+        return size;
+    }
 };
 
 /// Gives the memory of all rows back. They must not be in use.

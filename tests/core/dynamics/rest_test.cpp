@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 #include <tuple>
 #include <vector>
 
@@ -18,14 +19,63 @@ namespace {
 
 using namespace testing;
 
-/// The sweeps that a pass makes whose residuals are 1, 1/2, 1/4, ...
-std::vector<Sweep> sweeps_of(Pass pass, const Effort& effort) {
+/// The sweeps that a pass makes over one island.
+/// @param residual   of a sweep, by its number
+template <class Residual>
+std::vector<Sweep> sweeps_of(Pass pass, const Effort& effort, const Residual& residual) {
     std::vector<Sweep> list;
-    iterate(pass, effort, [&](const Sweep& sweep) {
+    PerMember<Effort> efforts;
+    efforts[0] = effort;
+    iterate(pass, efforts, Members::only(0), [&](const Sweep& sweep, Members) {
+        PerMember<double> residuals;
+        residuals[0] = residual(static_cast<int>(list.size()));
         list.push_back(sweep);
-        return std::ldexp(1.0, 1 - static_cast<int>(list.size()));
+        return residuals;
     });
     return list;
+}
+/// Those whose residuals are 1, 1/2, 1/4, ...
+std::vector<Sweep> sweeps_of(Pass pass, const Effort& effort) {
+    return sweeps_of(pass, effort, [](int number) { return std::ldexp(1.0, -number); });
+}
+
+/// Islands that are swept side by side, with efforts and residuals of their own.
+TEST(Sweeps, OfSeveralIslandsAreThoseOfEachAlone) {
+    std::mt19937_64 random(9);
+    for (int round = 0; round < 200; ++round) {
+        PerMember<Effort> efforts;
+        PerMember<double> factor;
+        Members some;
+        for (int i = 0; i < Members::kMost; ++i) {
+            if (random() % 3 == 0) continue;
+            some = some | Members::only(i);
+            efforts[i] = {static_cast<int>(random() % 20), random() % 5 == 0 ? -1 : 1e-3,
+                          1 + static_cast<int>(random() % 4)};
+            factor[i] = uniform(random, 0.3, 1.6);
+        }
+        const auto pass = static_cast<Pass>(random() % 3);
+        PerMember<std::vector<Sweep>> lists;
+        const PerMember<double> left = iterate(pass, efforts, some, [&](Sweep sweep, Members now) {
+            PerMember<double> residuals;
+            EXPECT_TRUE(now.any());
+            for (const int i : now) {
+                residuals[i] = std::pow(factor[i], lists[i].size());
+                lists[i].push_back(sweep);
+            }
+            return residuals;
+        });
+        for (int i = 0; i < Members::kMost; ++i) {
+            double last = 0;
+            const auto alone = some.has(i)
+                                   ? sweeps_of(pass, efforts[i],
+                                               [&](int n) { return last = std::pow(factor[i], n); })
+                                   : std::vector<Sweep>{};
+            ASSERT_EQ(lists[i].size(), alone.size());
+            EXPECT_EQ(left[i], last);
+            for (std::size_t k = 0; k < alone.size(); ++k)
+                EXPECT_EQ(lists[i][k].backward, alone[k].backward);
+        }
+    }
 }
 
 TEST(Sweeps, EndOnceTheResidualIsSmallAndInTheSameDirectionAsAll) {
@@ -60,14 +110,13 @@ TEST(Sweeps, AreSoManyAtLeastUnlessHardlyAnythingIsLeft) {
 
 TEST(Sweeps, EndWhereTheyLeadAway) {
     const auto count = [](double enough, double growth) {
-        int sweeps = 0;
-        iterate(Pass::kSolve, {.sweeps = 101, .enough = enough, .every = 2},
-                [&](Sweep) { return 1e-3 * std::pow(growth, sweeps++); });
-        return sweeps;
+        return sweeps_of(Pass::kSolve, {.sweeps = 101, .enough = enough, .every = 2},
+                         [&](int number) { return 1e-3 * std::pow(growth, number); })
+            .size();
     };
-    EXPECT_EQ(count(1e-6, 2), 9);       // 2^8 times as large
-    EXPECT_EQ(count(1e-6, 1.01), 101);  // 2.7 times
-    EXPECT_EQ(count(-1, 2), 101) << "all are asked for";
+    EXPECT_EQ(count(1e-6, 2), 9u);       // 2^8 times as large
+    EXPECT_EQ(count(1e-6, 1.01), 101u);  // 2.7 times
+    EXPECT_EQ(count(-1, 2), 101u) << "all are asked for";
 }
 
 Bodies on_floor() {

@@ -8,6 +8,7 @@
 
 #include "core/contact/manifold.hpp"
 #include "core/dynamics/bodies/bodies.hpp"
+#include "core/dynamics/solver/members.hpp"
 #include "core/simd/simd.hpp"
 
 namespace tesserae {
@@ -64,6 +65,8 @@ struct Batch {
     std::array<std::uint32_t, kLanes> a = {}, b = {};  ///< places in ColouredIslands::bodies
     std::array<std::uint32_t, kLanes> contact = {};    ///< each pair's first
     std::array<std::uint8_t, kLanes> points = {};      ///< each pair's number of contacts
+    std::array<std::uint8_t, kLanes> member = {};      ///< each pair's island, of its group
+    Members members;                                   ///< all of these
     std::uint32_t row = 0;                             ///< first of its rows
     std::uint32_t rows = 0;                            ///< the most points of a lane
     std::uint32_t response = 0;  ///< first of its point responses, see responses_of()
@@ -176,13 +179,21 @@ struct ColourBatches {
 
 /// The coloured islands of a sub-step, one behind the other: their bodies, their batches in order
 /// of colours, and a row for each point of a batch.
+///
+/// Small islands are in groups, whose pairs share batches: an island alone would leave most lanes
+/// empty. In a group the pairs of a batch have equally many points, so that what happens to an
+/// island does not depend on the others of its group. A large island is a group by itself.
 struct ColouredIslands {
     bool friction = false;                  ///< some body has friction; else there are no such rows
     bool rolling = false;                   ///< some body has rolling friction, likewise
     bool turns_unevenly = false;            ///< some body is not isotropic
+    std::vector<std::uint32_t> islands;     ///< number of every coloured island among all
+    std::vector<std::uint32_t> group;       ///< of every coloured island
     std::vector<std::uint32_t> first_body;  ///< of every coloured island, and an end
-    std::vector<std::uint32_t> first_colour;  ///< likewise; each last colour has what is left over
-    std::vector<double> mass_unit;            ///< of every coloured island, a power of two [kg]
+    std::vector<double> mass_unit;          ///< of every coloured island, a power of two [kg]
+    std::vector<std::uint32_t> first_member;   ///< of every group, in `islands`, and an end
+    std::vector<std::uint32_t> first_colour;   ///< likewise; each last colour has what is left over
+    std::vector<std::uint8_t> shares_batches;  ///< of every group: its islands are small
     std::vector<BodyId> bodies;
     std::vector<ColourBatches> colours;
     std::vector<Batch> round, general;
@@ -200,7 +211,11 @@ struct ColouredIslands {
     RowImpulses<4> round_direction;
     RowImpulses<3> general_direction;
     std::vector<std::array<double, 2>> round_work, general_work;  ///< sums of each batch
-    std::vector<std::array<double, 2>> others_work;               ///< likewise, of each of `others`
+    // The same for each lane, of groups whose islands share batches.
+    std::vector<std::array<Eight, 2>> round_lane_work, general_lane_work;
+    std::vector<Eight> round_left, general_left;     ///< velocities left to solve in the last sweep
+                                                     ///< that was measured, of each lane [m/s]
+    std::vector<std::array<double, 2>> others_work;  ///< likewise, of each of `others`
     // Inertias of `bodies`, if any turns unevenly.
     std::vector<InverseInertia> inverse_inertias;
     std::vector<BodyInertia> inertias;          ///< for directions
@@ -221,6 +236,11 @@ struct ColouredIslands {
     std::vector<GeneralFriction> general_friction;  ///< likewise
     std::vector<PairRolling> pair_rolling;          ///< of `general`
     std::vector<GeneralRolling> general_rolling;    ///< of `rows`
+
+    /// Returns whether the island of this place is the first of its group.
+    bool leads(std::uint32_t place) const { return first_member[group[place]] == place; }
+    /// Returns whether it may share batches with others.
+    bool shares(std::uint32_t place) const { return shares_batches[group[place]] != 0; }
 };
 
 }  // namespace tesserae

@@ -2,30 +2,43 @@
 #include "core/dynamics/solver/kernels/general_sweep.hpp"
 #include "core/dynamics/solver/kernels/points.hpp"
 #include "core/dynamics/solver/kernels/sixteen.hpp"
+#include "core/dynamics/solver/kernels/unswept.hpp"
 
 namespace tesserae {
 
 using namespace lanes;
 
-double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
+namespace {
+
+/// Sweeps one batch, or two at once.
+double sweep_at_once(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
     ColouredIslands& coloured = stage.step.coloured;
-    const auto sweep_all = [&](auto friction, auto rolling, auto uneven) {
-        float most = 0;
-        for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
-            const auto left =
-                solve_points<friction(), rolling(), uneven()>(coloured, lane, batch, sweep);
-            if (sweep.measured) most = std::max(most, largest_lane(left));
+    if (batches.end - batches.begin == 2)
+        return sixteen::sweep_general(coloured, batches.begin, sweep);
+    return with_kind_of_general(
+        coloured, sweep.pass, [&](auto friction, auto rolling, auto uneven) {
+            float most = 0;
+            for_lanes(lanes, sweep.backward, [&](const auto& lane) {
+                const auto left = solve_points<friction(), rolling(), uneven()>(
+                    coloured, lane, batches.begin, sweep);
+                if (sweep.measured) most = std::max(most, largest_lane(left));
+            });
+            return most;
         });
-        return most;
-    };
-    if (lanes != LaneCount::kSixteen) return with_kind_of_general(coloured, sweep.pass, sweep_all);
-    return largest_of_twos(coloured.general, batches, sweep.backward, [&](BatchRange some) {
-        return some.end - some.begin == 2 ? sixteen::sweep_general(coloured, some.begin, sweep)
-                                          : sweep_general(stage, some, sweep, LaneCount::kEight);
+}
+
+}  // namespace
+
+double sweep_general(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes,
+                     Members some) {
+    ColouredIslands& coloured = stage.step.coloured;
+    return sweep_batches(coloured.general, batches, sweep, lanes, some, [&](BatchRange at_once) {
+        return sweep_some(coloured, coloured.general, coloured.impulses, at_once, some,
+                          [&] { return sweep_at_once(stage, at_once, sweep, lanes); });
     });
 }
 
-void take_warm_start_general(const ColouredStage& stage, BatchRange batches) {
+void take_warm_start_general(const ColouredStage& stage, BatchRange batches, Members some) {
     ColouredIslands& coloured = stage.step.coloured;
     const Lane<Float8> lane;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
@@ -33,8 +46,15 @@ void take_warm_start_general(const ColouredStage& stage, BatchRange batches) {
         const Frame<Float8> frame(load(lane, pair_frame.h));
         const FrameScrew<Float8> warm_start =
             frame.from_world(LanePair<Float8, false>(lane, coloured, i).motion());
-        add_to(lane, warm_start.along, pair_frame.motion);
-        if (coloured.friction) add_to(lane, warm_start.across, coloured.pair_friction[i].motion);
+        const Float8 takes = lane.load(lanes_of(coloured.general[i], some));
+        const auto take = [&](const auto& change, auto& motion) {
+            for (std::size_t k = 0; k < change.size(); ++k) {
+                const Float8 before = lane.load(motion[k]);
+                lane.store(takes > Float8{} ? before + change[k] : before, motion[k]);
+            }
+        };
+        take(warm_start.along, pair_frame.motion);
+        if (coloured.friction) take(warm_start.across, coloured.pair_friction[i].motion);
     }
 }
 
@@ -54,7 +74,7 @@ Bivector angular_impulse_in_lane(const GeneralRolling& row, const PairFrame& fra
 }
 
 /// The impulses of a row in the world, lane by lane.
-void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t point) {
+void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t point, Members some) {
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const std::uint32_t row = batch.row + point;
@@ -72,33 +92,35 @@ void keep_row(const ColouredStage& stage, std::uint32_t index, std::uint32_t poi
         store_four(slope.c, to);
     }
     for (std::size_t k = 0; k < kLanes; ++k) {
-        if (point >= batch.points[k]) continue;
+        if (point >= batch.points[k] || !some.has(batch.member[k])) continue;
         const std::uint32_t contact = batch.contact[k] + point;
-        stage.step.impulses[contact] = {stage.mass_unit * normals.lane[k], slopes[k]};
+        const double mass_unit = stage.mass_unit(batch.member[k]);
+        stage.step.impulses[contact] = {mass_unit * normals.lane[k], slopes[k]};
         if (coloured.rolling)
             stage.step.angular_impulses[contact] =
-                stage.mass_unit *
+                mass_unit *
                 angular_impulse_in_lane(coloured.general_rolling[row], coloured.frames[index], k);
     }
 }
 
-void keep_hits(const ColouredStage& stage, std::uint32_t index, std::uint32_t point) {
+void keep_hits(const ColouredStage& stage, std::uint32_t index, std::uint32_t point, Members some) {
     const Batch& batch = stage.step.coloured.general[index];
     const Eight& normal = stage.step.coloured.impulses.normal[batch.row + point];
     for (std::size_t k = 0; k < kLanes; ++k)
-        if (point < batch.points[k])
-            stage.step.hit[batch.contact[k] + point] = stage.mass_unit * normal.lane[k];
+        if (point < batch.points[k] && some.has(batch.member[k]))
+            stage.step.hit[batch.contact[k] + point] =
+                stage.mass_unit(batch.member[k]) * normal.lane[k];
 }
 
 }  // namespace
 
-void keep_general(const ColouredStage& stage, BatchRange batches) {
+void keep_general(const ColouredStage& stage, BatchRange batches, Members some) {
     for (std::uint32_t i = batches.begin; i < batches.end; ++i)
         for (std::uint32_t point = 0; point < stage.step.coloured.general[i].rows; ++point)
             if (stage.cause == Cause::kImpact)
-                keep_hits(stage, i, point);
+                keep_hits(stage, i, point, some);
             else
-                keep_row(stage, i, point);
+                keep_row(stage, i, point, some);
 }
 
 }  // namespace tesserae

@@ -306,6 +306,7 @@ template <bool kFriction, bool kRolling, bool kUneven, class F>
     else
         solve_parts<kFriction, kRolling>(lane, pair, index, of, left);
     bodies.apply(frame.to_world(of.impulse));
+    if (sweep.measured) lane.template in_batch<Eight>().store(left, coloured.general_left[index]);
     return left;
 }
 

@@ -10,10 +10,10 @@ namespace {
 using namespace lanes;
 constexpr Lane<Float8> kEvery;
 
-double sum_of(Float8 x) {
-    double sum = 0;
-    for (std::size_t k = 0; k < kLanes; ++k) sum += x[k];
-    return sum;
+Eight stored(Float8 x) {
+    Eight lanes;
+    kEvery.store(x, lanes);
+    return lanes;
 }
 
 template <std::size_t kSize>
@@ -23,15 +23,15 @@ Float8 product(const std::array<Float8, kSize>& x, const std::array<Eight, kSize
     return sum;
 }
 
-void scale(Eight& x, float by) { kEvery.store(by * kEvery.load(x), x); }
+void scale(Eight& x, Float8 by) { kEvery.store(by * kEvery.load(x), x); }
 template <std::size_t kSize>
-void scale(std::array<Eight, kSize>& all, float by) {
+void scale(std::array<Eight, kSize>& all, Float8 by) {
     for (Eight& x : all) scale(x, by);
 }
 
 }  // namespace
 
-double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
+Eight load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
     const ColouredIslands& coloured = stage.step.coloured;
     const auto& [normal, tangent] = coloured.round_impulses;
     Float8 work =
@@ -42,10 +42,10 @@ double load_work_of_round(const ColouredStage& stage, std::uint32_t batch) {
         const RoundRolling& rolling = coloured.round_rolling[batch];
         work += product(load_all(kEvery, rolling.turning), rolling.impulse);
     }
-    return sum_of(work);
+    return stored(work);
 }
 
-double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
+Eight load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
     const ColouredIslands& coloured = stage.step.coloured;
     const Batch& batch = coloured.general[index];
     const auto along = load_all(kEvery, coloured.frames[index].motion);
@@ -65,22 +65,26 @@ double load_work_of_general(const ColouredStage& stage, std::uint32_t index) {
             work += product<6>({along[1], along[2], along[3], across[3], across[4], across[5]},
                                coloured.general_rolling[row].impulse);
     }
-    return sum_of(work);
+    return stored(work);
 }
 
-void leave_part_of_round(const ColouredStage& stage, BatchRange batches, float part) {
+void leave_part_of_round(const ColouredStage& stage, BatchRange batches,
+                         const PerMember<float>& parts) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
+        const Float8 part = kEvery.load(of_lanes(coloured.round[i], parts));
         scale(coloured.round_impulses.normal[i], part);
         if (coloured.friction) scale(coloured.round_impulses.tangent[i], part);
         if (coloured.rolling) scale(coloured.round_rolling[i].impulse, part);
     }
 }
 
-void leave_part_of_general(const ColouredStage& stage, BatchRange batches, float part) {
+void leave_part_of_general(const ColouredStage& stage, BatchRange batches,
+                           const PerMember<float>& parts) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.general[i];
+        const Float8 part = kEvery.load(of_lanes(batch, parts));
         for (std::uint32_t row = batch.row; row < batch.row + batch.rows; ++row) {
             scale(coloured.impulses.normal[row], part);
             if (coloured.friction) scale(coloured.impulses.tangent[row], part);

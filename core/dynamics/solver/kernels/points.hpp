@@ -65,8 +65,8 @@ inline bool is_full(const Batch& batch) { return batch.points[kLanes - 1] == bat
 
 /// Writes the contact `index` of round bodies into a lane. Velocities and impulses are in float,
 /// targets are relative to the start and computed in double.
-inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
-                      EightPoints& points) {
+inline void put_point(const ColouredStage& stage, std::size_t member, std::uint32_t index,
+                      std::size_t lane, EightPoints& points) {
     const Simulation& simulation = stage.simulation;
     const StepData& step = stage.step;
     const Contact& c = step.contacts[index];
@@ -75,14 +75,14 @@ inline void put_point(const ColouredStage& stage, std::uint32_t index, std::size
     const Vec4 r_a = c.point - step.position[c.a], r_b = c.point - step.position[c.b];
     const Vec4 v = relative_velocity(step, c.a, r_a, c.b, r_b, simulation.needs.turning);
     const double along = c.normal.dot(v);
-    const ContactTargets targets =
-        PairTargets(simulation, step, c, stage.cause, stage.parting.at(step, {index, index + 1}))
-            .at(c.separation, along, 0);  // of round bodies
+    const ContactTargets targets = PairTargets(simulation, step, c, stage.cause,
+                                               stage.parting[member].at(step, {index, index + 1}))
+                                       .at(c.separation, along, 0);  // of round bodies
     put(c.normal, points.normal[lane]);
     put_offset(simulation, c.a, r_a, points.r_a[lane]);
     put_offset(simulation, c.b, r_b, points.r_b[lane]);
     put(v - along * c.normal, points.velocity[lane]);
-    const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
+    const double per_mass_unit = 1 / stage.mass_unit(member);  // a power of two
     put(per_mass_unit * impulse.tangent(), points.impulse[lane]);
     put({targets.first - along, targets.second - along, 1, per_mass_unit * impulse.normal},
         points.along[lane]);
@@ -124,8 +124,8 @@ template <class F>
 /// 3e38.
 constexpr double kLargestFloatFriction = 1e18;
 
-inline float float_friction(const ColouredStage& stage, const Contact& c) {
-    if (!stage.friction) return 0;
+inline float float_friction(const ColouredStage& stage, int member, const Contact& c) {
+    if (stage.frictionless.has(member)) return 0;
     return static_cast<float>(
         std::min(friction_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
@@ -135,8 +135,8 @@ inline Bivector bivector_in_lane(const std::array<Eight, 6>& from, std::size_t l
             from[3].lane[lane], from[4].lane[lane], from[5].lane[lane]};
 }
 
-inline float float_rolling_arm(const ColouredStage& stage, const Contact& c) {
-    if (!stage.friction) return 0;
+inline float float_rolling_arm(const ColouredStage& stage, int member, const Contact& c) {
+    if (stage.frictionless.has(member)) return 0;
     return static_cast<float>(
         std::min(rolling_arm_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
@@ -147,10 +147,10 @@ inline void put_turning(const ColouredStage& stage, std::uint32_t index, std::si
     put(stage.step.angular_velocity[c.b] - stage.step.angular_velocity[c.a], lane, turning);
 }
 /// Writes the angular impulse that a contact starts from into a lane.
-inline void put_angular_impulse(const ColouredStage& stage, std::uint32_t index, std::size_t lane,
-                                std::array<Eight, 6>& impulse) {
+inline void put_angular_impulse(const ColouredStage& stage, std::size_t member, std::uint32_t index,
+                                std::size_t lane, std::array<Eight, 6>& impulse) {
     if (stage.cause == Cause::kImpact) return;
-    put((1 / stage.mass_unit) * stage.step.angular_impulses[index], lane, impulse);
+    put((1 / stage.mass_unit(member)) * stage.step.angular_impulses[index], lane, impulse);
 }
 
 /// A point of a pair, in world axes.
@@ -172,15 +172,16 @@ inline Vec4 centre_of(std::span<const PairPoint> points, const Vec4& normal) {
 
 /// Writes a pair with `count` contacts from `first` on into a lane, as put_point() does for one
 /// contact.
-inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_t count,
-                     std::size_t lane, EightPairs& pairs) {
+inline void put_pair(const ColouredStage& stage, std::size_t member, std::uint32_t first,
+                     std::size_t count, std::size_t lane, EightPairs& pairs) {
     const Simulation& simulation = stage.simulation;
     const StepData& step = stage.step;
     const Contact contact = step.contacts[first];
     const BodyId a = contact.a, b = contact.b;
     const PairTargets targets_of(simulation, step, contact, stage.cause,
-                                 stage.parting.at(step, {first, first + count}));
-    const double per_mass_unit = 1 / stage.mass_unit;  // a power of two
+                                 stage.parting[member].at(step, {first, first + count}));
+    const double mass_unit = stage.mass_unit(member);
+    const double per_mass_unit = 1 / mass_unit;  // a power of two
     std::array<PairPoint, kManifoldPoints> points;
     points[0] = {contact.point, contact.separation};
     for (std::uint32_t p = 1; p < count; ++p)
@@ -197,8 +198,7 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
             slip_on_rim(step, {first, first + count}, contact.normal, v, stage.cause),
         pairs.velocity[lane]);
     put(turning, lane, pairs.turning);
-    pairs.rounding.lane[lane] =
-        static_cast<float>(least_response(simulation, a, b) * stage.mass_unit);
+    pairs.rounding.lane[lane] = static_cast<float>(least_response(simulation, a, b) * mass_unit);
     for (std::uint32_t p = 0; p < count; ++p) {
         EightPairs::Points& point = pairs.points[p];
         const Vec4 place = points[p].place - centre;
@@ -216,18 +216,18 @@ inline void put_pair(const ColouredStage& stage, std::uint32_t first, std::size_
     }
 }
 
-/// Calls work(Lane<F>, batch) for all lanes of the batches, in the order of the sweep.
+/// Calls work(Lane<F>) for all lanes of a batch, in the order of the sweep.
 template <class Work>
-void for_lanes(BatchRange batches, LaneCount lanes, bool backward, const Work& work) {
-    for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
-        const std::uint32_t batch = backward ? batches.begin + (batches.end - 1 - i) : i;
-        if (lanes != LaneCount::kOne) {
-            work(Lane<Float8>{}, batch);
-            continue;
-        }
-        for (std::size_t k = 0; k < kLanes; ++k)
-            work(Lane<float>(backward ? kLanes - 1 - k : k), batch);
-    }
+void for_lanes(LaneCount lanes, bool backward, const Work& work) {
+    if (lanes != LaneCount::kOne) return work(Lane<Float8>{});
+    for (std::size_t k = 0; k < kLanes; ++k) work(Lane<float>(backward ? kLanes - 1 - k : k));
+}
+/// Calls work(Lane<F>) for the lanes of some islands: at once if the batch has no others.
+template <class Work>
+void for_lanes_of(const Batch& batch, Members some, LaneCount lanes, const Work& work) {
+    if (some.has_all(batch.members)) return for_lanes(lanes, false, work);
+    for (std::size_t k = 0; k < kLanes; ++k)
+        if (some.has(batch.member[k])) work(Lane<float>(k));
 }
 
 }  // namespace tesserae::lanes

@@ -2,6 +2,7 @@
 #include "core/dynamics/solver/kernels/points.hpp"
 #include "core/dynamics/solver/kernels/round_sweep.hpp"
 #include "core/dynamics/solver/kernels/sixteen.hpp"
+#include "core/dynamics/solver/kernels/unswept.hpp"
 
 namespace tesserae {
 namespace {
@@ -65,62 +66,74 @@ template <bool kFriction, bool kRolling, class F>
 }
 
 template <bool kFriction, bool kRolling>
-void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
+void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes, Members some) {
     ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];
+        if (!(batch.members & some).any()) continue;
+        const bool whole = some.has_all(batch.members);
         prefetch(stage, coloured.round, i);
         EightPoints points;
         if (!is_full(batch)) points = {};
-        if constexpr (kFriction) coloured.round_friction[i].friction = {};
-        if constexpr (kRolling) coloured.round_rolling[i] = {};
+        if (kFriction && whole) coloured.round_friction[i].friction = {};
+        if (kRolling && whole) coloured.round_rolling[i] = {};
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
-            put_point(stage, batch.contact[k], k, points);
+            const std::uint8_t member = batch.member[k];
+            if (!some.has(member)) continue;
+            put_point(stage, member, batch.contact[k], k, points);
             const Contact& c = stage.step.contacts[batch.contact[k]];
             if constexpr (kFriction)
-                coloured.round_friction[i].friction.lane[k] = float_friction(stage, c);
+                coloured.round_friction[i].friction.lane[k] = float_friction(stage, member, c);
             if (kFriction && slips_by_turning(stage))
                 put_turning(stage, batch.contact[k], k, points.turning);
             if constexpr (kRolling) {
                 RoundRolling& rolling = coloured.round_rolling[i];
-                rolling.arm.lane[k] = float_rolling_arm(stage, c);
+                rolling.arm.lane[k] = float_rolling_arm(stage, member, c);
                 put_turning(stage, batch.contact[k], k, rolling.turning);
-                put_angular_impulse(stage, batch.contact[k], k, rolling.impulse);
+                put_angular_impulse(stage, member, batch.contact[k], k, rolling.impulse);
             }
         }
-        for_lanes({i, i + 1}, lanes, false, [&](const auto& lane, std::uint32_t) {
+        for_lanes_of(batch, some, lanes, [&](const auto& lane) {
             start_batch<kFriction, kRolling>(stage, lane, points, i);
         });
     }
 }
 
-}  // namespace
-
-void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes) {
-    const ColouredIslands& coloured = stage.step.coloured;
-    if (coloured.rolling) return start_all<true, true>(stage, batches, lanes);
-    return coloured.friction ? start_all<true, false>(stage, batches, lanes)
-                             : start_all<false, false>(stage, batches, lanes);
-}
-
-double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
+/// Sweeps one batch, or two at once.
+double sweep_at_once(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes) {
     ColouredIslands& coloured = stage.step.coloured;
-    const auto sweep_all = [&](auto friction, auto rolling) {
+    if (batches.end - batches.begin == 2)
+        return sixteen::sweep_round(coloured, batches.begin, sweep);
+    return with_kind_of_round(coloured, sweep.pass, [&](auto friction, auto rolling) {
         float most = 0;
-        for_lanes(batches, lanes, sweep.backward, [&](const auto& lane, std::uint32_t batch) {
-            const auto left = solve_batch<friction(), rolling()>(coloured, lane, batch, sweep);
+        for_lanes(lanes, sweep.backward, [&](const auto& lane) {
+            const auto left =
+                solve_batch<friction(), rolling()>(coloured, lane, batches.begin, sweep);
             if (sweep.measured) most = std::max(most, largest_lane(left));
         });
         return most;
-    };
-    if (lanes != LaneCount::kSixteen) return with_kind_of_round(coloured, sweep.pass, sweep_all);
-    return largest_of_twos(coloured.round, batches, sweep.backward, [&](BatchRange some) {
-        return some.end - some.begin == 2 ? sixteen::sweep_round(coloured, some.begin, sweep)
-                                          : sweep_round(stage, some, sweep, LaneCount::kEight);
     });
 }
 
-void take_warm_start_round(const ColouredStage& stage, BatchRange batches) {
+}  // namespace
+
+void start_round(const ColouredStage& stage, BatchRange batches, LaneCount lanes, Members some) {
+    const ColouredIslands& coloured = stage.step.coloured;
+    if (coloured.rolling) return start_all<true, true>(stage, batches, lanes, some);
+    return coloured.friction ? start_all<true, false>(stage, batches, lanes, some)
+                             : start_all<false, false>(stage, batches, lanes, some);
+}
+
+double sweep_round(const ColouredStage& stage, BatchRange batches, Sweep sweep, LaneCount lanes,
+                   Members some) {
+    ColouredIslands& coloured = stage.step.coloured;
+    return sweep_batches(coloured.round, batches, sweep, lanes, some, [&](BatchRange at_once) {
+        return sweep_some(coloured, coloured.round, coloured.round_impulses, at_once, some,
+                          [&] { return sweep_at_once(stage, at_once, sweep, lanes); });
+    });
+}
+
+void take_warm_start_round(const ColouredStage& stage, BatchRange batches, Members some) {
     ColouredIslands& coloured = stage.step.coloured;
     const Lane<Float8> lane;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
@@ -129,36 +142,40 @@ void take_warm_start_round(const ColouredStage& stage, BatchRange batches) {
         const auto b = LaneBodies<Float8>(lane, coloured.changes.data(), batch.b).load<true>();
         const LaneVec4<Float8> n = load(lane, coloured.round_rows[i].normal);
         const LaneVec4<Float8> v = b.velocity - a.velocity;
-        const Float8 along = dot(n, v);
-        NormalRow& row = coloured.round_rows[i].along;
-        lane.store(lane.load(row.target) - along, row.target);
-        Eight& second = coloured.round_second[i];
-        lane.store(lane.load(second) - along, second);
+        const Float8 along = dot(n, v), takes = lane.load(lanes_of(batch, some));
+        const auto take = [&](Float8 change, Eight& of_start) {
+            const Float8 before = lane.load(of_start);
+            lane.store(takes > Float8{} ? before + change : before, of_start);
+        };
+        take(-along, coloured.round_rows[i].along.target);
+        take(-along, coloured.round_second[i]);
         if (!coloured.friction) continue;
         RoundFriction& friction = coloured.round_friction[i];
         const LaneVec4<Float8> slip = slip_of(lane, n, v, along, friction, a, b);
-        store(lane, load(lane, friction.slip) + slip, friction.slip);
+        for (std::size_t k = 0; k < 4; ++k) take(slip[k], friction.slip[k]);
     }
 }
 
-void keep_round(const ColouredStage& stage, BatchRange batches) {
+void keep_round(const ColouredStage& stage, BatchRange batches, Members some) {
     const ColouredIslands& coloured = stage.step.coloured;
     for (std::uint32_t i = batches.begin; i < batches.end; ++i) {
         const Batch& batch = coloured.round[i];
         for (std::size_t k = 0; k < kLanes && batch.points[k] > 0; ++k) {
+            if (!some.has(batch.member[k])) continue;
+            const double mass_unit = stage.mass_unit(batch.member[k]);
             const float normal = coloured.round_impulses.normal[i].lane[k];
             if (stage.cause == Cause::kImpact) {
-                stage.step.hit[batch.contact[k]] = stage.mass_unit * normal;
+                stage.step.hit[batch.contact[k]] = mass_unit * normal;
                 continue;
             }
             ContactImpulse& impulse = stage.step.impulses[batch.contact[k]];
-            impulse = {stage.mass_unit * normal};
+            impulse = {mass_unit * normal};
             if (!coloured.friction) continue;
             for (std::size_t axis = 0; axis < 4 && normal > 0; ++axis)
                 impulse.slope[axis] = coloured.round_impulses.tangent[i][axis].lane[k] / normal;
             if (coloured.rolling)
                 stage.step.angular_impulses[batch.contact[k]] =
-                    stage.mass_unit * bivector_in_lane(coloured.round_rolling[i].impulse, k);
+                    mass_unit * bivector_in_lane(coloured.round_rolling[i].impulse, k);
         }
     }
 }

@@ -108,9 +108,11 @@ template <bool kFriction, bool kRolling, class F>
     bodies_a.template store<kFriction>(a);
     bodies_b.template store<kFriction>(b);
     if (!sweep.measured) return F{};
-    const F left = velocity_left(lanes.in_row.load(row.along.mass), change);
-    if constexpr (!kFriction) return left;
-    return larger(left, square_root(squared_velocity_left(tangent_mass, tangent_change)));
+    F left = velocity_left(lanes.in_row.load(row.along.mass), change);
+    if constexpr (kFriction)
+        left = larger(left, square_root(squared_velocity_left(tangent_mass, tangent_change)));
+    lanes.in_list.store(left, coloured.round_left[batch]);
+    return left;
 }
 
 /// Calls sweep(as kFriction, as kRolling), each a std::bool_constant.

@@ -13,7 +13,7 @@ TEST(SlipByTurning, InLanesIsThatOfEachContact) {
     Unsolved island = random_island(0.5, true);
     const Simulation& simulation = island.simulation;
     StepData& step = island.step;
-    const ColouredStage stage{simulation, step, 1, Cause::kLoad, {}};
+    const ColouredStage stage{.simulation = simulation, .step = step, .first_member = 0};
     int driven = 0, slower = 0;
     for (std::uint32_t i = 0; i < step.contacts.size(); ++i) {
         const Contact contact = step.contacts[i];

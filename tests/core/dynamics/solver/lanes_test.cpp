@@ -19,7 +19,7 @@ using namespace testing;
 std::array<int, kManifoldPoints + 1> count_twos(const ColouredIslands& coloured) {
     std::array<int, kManifoldPoints + 1> twos = {};
     const auto count = [&](const std::vector<Batch>& all, BatchRange range) {
-        largest_of_twos(all, range, false, [&](BatchRange some) {
+        largest_of_twos(all, range, false, Members::only(0), [&](BatchRange some) {
             twos[all[some.begin].rows] += some.end - some.begin == 2;
             return 0;
         });

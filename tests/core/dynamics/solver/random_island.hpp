@@ -80,6 +80,7 @@ inline Unsolved random_island(double friction, bool spheres_only, double rolling
         for (const ContactImpulse& impulse : world.step.impulses)
             world.step.angular_impulses.push_back(impulse.normal * random_bivector(random));
     IslandBuilder(1).build(world.simulation, world.step);
+    world.step.awaits.assign(world.step.islands.size(), Awaits::kImpact);
     return world;
 }
 
