@@ -209,14 +209,17 @@ class Polishing {
 };
 
 /// Where bodies overlap or touch; or where they are so little apart that the direction is in doubt.
-KnownGap deepest_overlap(const MinkowskiDifference& difference, Simplex& simplex,
-                         const KnownGap& apart) {
+/// @return nothing if the direction was taken
+std::optional<KnownGap> deepest_overlap(const MinkowskiDifference& difference, Simplex& simplex,
+                                        const KnownGap& apart, const TakesDirection& takes) {
+    const bool overlaps = simplex.contains_target();
     const FullSimplex full = filled_up(difference, simplex);
     KnownGap best = apart;
     LeastOverlap least;
     int known = 0;
     if (full.count == 5) {
         least = least_overlap(difference, full.point);
+        if (overlaps && !least.normal.isZero(0) && takes(least.normal)) return std::nullopt;
         known = 4;
         if (-least.depth > best.gap) best = {least.normal, -least.depth};
     } else {
@@ -242,13 +245,20 @@ Simplex first_simplex(MinkowskiDifference& difference, const Vec4& guess) {
     return simplex;
 }
 
-ConvexSeparation separation_from(const MinkowskiDifference& difference, Simplex& simplex,
-                                 double enough) {
+constexpr auto takes_none = [](const Vec4&) { return false; };
+
+/// @return nothing if the direction was taken
+std::optional<ConvexSeparation> separation_from(const MinkowskiDifference& difference,
+                                                Simplex& simplex, double enough,
+                                                const TakesDirection& takes) {
     KnownGap best = approach_target(difference, simplex, enough / difference.unit());
     const double distance = simplex.contains_target() ? 0 : simplex.nearest().norm();
     if (best.normal.isZero(0) || simplex.contains_target() ||
-        (distance < kNearlyTouching && distance - best.gap > 2 * kEqual * difference.rounding()))
-        best = deepest_overlap(difference, simplex, best);
+        (distance < kNearlyTouching && distance - best.gap > 2 * kEqual * difference.rounding())) {
+        const auto deepest = deepest_overlap(difference, simplex, best, takes);
+        if (!deepest) return std::nullopt;
+        best = *deepest;
+    }
 
     // The points lie apart along the normal but for a part of the error of round bodies' normals,
     // and there it is along the surfaces.
@@ -256,7 +266,8 @@ ConvexSeparation separation_from(const MinkowskiDifference& difference, Simplex&
     const Vec4 on_b = on_a - (simplex.nearest() + simplex.target());
     const Vec4 middle = (on_a + on_b) / 2, half = best.normal * (best.gap / 2);
     const double unit = difference.unit();
-    return {best.normal, unit * best.gap, unit * (middle - half), unit * (middle + half)};
+    return ConvexSeparation{best.normal, unit * best.gap, unit * (middle - half),
+                            unit * (middle + half)};
 }
 
 }  // namespace
@@ -265,20 +276,15 @@ ConvexSeparation separation_of(const Support& a, const Support& b, const Vec4& g
                                double enough) {
     MinkowskiDifference difference(a, b, size);
     Simplex simplex = first_simplex(difference, guess);
-    return separation_from(difference, simplex, enough);
+    return *separation_from(difference, simplex, enough, takes_none);
 }
 
-std::optional<Vec4> direction_of_overlap(const Support& a, const Support& b, const Vec4& guess,
-                                         double size) {
+std::optional<ConvexSeparation> separation_unless(const Support& a, const Support& b,
+                                                  const Vec4& guess, double size,
+                                                  const TakesDirection& takes) {
     MinkowskiDifference difference(a, b, size);
     Simplex simplex = first_simplex(difference, guess);
-    approach_target(difference, simplex, std::numeric_limits<double>::infinity());
-    if (!simplex.contains_target()) return std::nullopt;
-    const FullSimplex full = filled_up(difference, simplex);
-    if (full.count < 5) return std::nullopt;
-    const LeastOverlap least = least_overlap(difference, full.point);
-    if (least.normal.isZero(0)) return std::nullopt;
-    return least.normal;
+    return separation_from(difference, simplex, std::numeric_limits<double>::infinity(), takes);
 }
 
 ConvexSeparation separation_of(const Support& a, const Support& b,
@@ -289,7 +295,7 @@ ConvexSeparation separation_of(const Support& a, const Support& b,
     difference.note_coordinates(points[0]);
     Simplex simplex;
     simplex.start(Vec4::Zero(), std::span(points.data(), first.size()));
-    return separation_from(difference, simplex, enough);
+    return *separation_from(difference, simplex, enough, takes_none);
 }
 
 }  // namespace tesserae

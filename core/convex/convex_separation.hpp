@@ -63,11 +63,15 @@ ConvexSeparation separation_of(const Support& a, const Support& b,
                                std::span<const VertexPair> first, double size,
                                double enough = std::numeric_limits<double>::infinity());
 
-/// Returns about the normal along which two bodies overlap least, for a method to start from that
-/// converges fast near it. Costs a fifth of separation_of(), which goes on from there.
-/// @return nothing if they do not overlap, or hardly
-std::optional<Vec4> direction_of_overlap(const Support& a, const Support& b, const Vec4& guess,
-                                         double size);
+/// Takes about the normal along which two bodies overlap least, if it knows the separation from
+/// there on. Returns whether it does.
+using TakesDirection = FunctionRef<bool(const Vec4&)>;
+/// Returns the separation of two bodies. If they overlap, about the normal is offered first: what
+/// leads from there to the normal itself takes most of the time.
+/// @return nothing if the direction was taken
+std::optional<ConvexSeparation> separation_unless(const Support& a, const Support& b,
+                                                  const Vec4& guess, double size,
+                                                  const TakesDirection& takes);
 
 /// Returns the separation of two bodies that are all points within a radius of two convex cores,
 /// from the separation of the cores. The support function of a ball is the same in all directions,

@@ -270,25 +270,28 @@ ConvexSeparation separation_of(const PlacedBalls& a, const PlacedBalls& b) {
     // The general method finds where to start, or what is less in a deep overlap.
     const auto support_a = [&](const Vec4& n) { return Vec4(support(a, n) - a.centre); };
     const auto support_b = [&](const Vec4& n) { return Vec4(support(b, n) - a.centre); };
-    if (const auto direction = direction_of_overlap(support_a, support_b, a.turn * guess, size)) {
-        const Vec4 start = a.turn.transpose() * *direction;
-        if (search.run(start) && search.gap(search.normal()) >= search.gap(start)) {
-            const ConvexSeparation deep = found(search.normal());
-            // Of equal ones the one that was found first.
-            const bool as_good = best.distance >= deep.distance - kPlacedBallsAccuracy * size;
-            return is_found && as_good ? best : deep;
-        }
+    std::optional<ConvexSeparation> deep;
+    const auto takes = [&](const Vec4& direction) {
+        const Vec4 start = a.turn.transpose() * direction;
+        if (!search.run(start) || search.gap(search.normal()) < search.gap(start)) return false;
+        deep = found(search.normal());
+        return true;
+    };
+    auto general = separation_unless(support_a, support_b, a.turn * guess, size, takes);
+    if (!general) {
+        // Of equal ones the one that was found first.
+        const bool as_good = best.distance >= deep->distance - kPlacedBallsAccuracy * size;
+        return is_found && as_good ? best : *deep;
     }
-    ConvexSeparation general = separation_of(support_a, support_b, a.turn * guess, size);
-    general.on_a += a.centre;
-    general.on_b += a.centre;
+    general->on_a += a.centre;
+    general->on_b += a.centre;
     // Of equal ones that whose points are on the surfaces.
-    const double enough = general.distance - kPlacedBallsAccuracy * size;
+    const double enough = general->distance - kPlacedBallsAccuracy * size;
     if (is_found && best.distance >= enough) return best;
-    const Vec4 start = a.turn.transpose() * general.normal;
+    const Vec4 start = a.turn.transpose() * general->normal;
     if (search.run(start) && unit * search.gap(search.normal()) >= enough)
         return found(search.normal());
-    return general;
+    return *general;
 }
 
 }  // namespace tesserae
