@@ -218,8 +218,11 @@ std::optional<KnownGap> deepest_overlap(const MinkowskiDifference& difference, S
     LeastOverlap least;
     int known = 0;
     if (full.count == 5) {
-        least = least_overlap(difference, full.point);
-        if (overlaps && !least.normal.isZero(0) && takes(least.normal)) return std::nullopt;
+        const auto offers = [&](const Vec4& n) { return overlaps && !n.isZero(0) && takes(n); };
+        const auto found = least_overlap(difference, full.point, offers);
+        if (!found) return std::nullopt;
+        least = *found;
+        if (offers(least.normal)) return std::nullopt;
         known = 4;
         if (-least.depth > best.gap) best = {least.normal, -least.depth};
     } else {

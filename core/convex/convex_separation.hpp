@@ -66,8 +66,8 @@ ConvexSeparation separation_of(const Support& a, const Support& b,
 /// Takes about the normal along which two bodies overlap least, if it knows the separation from
 /// there on. Returns whether it does.
 using TakesDirection = FunctionRef<bool(const Vec4&)>;
-/// Returns the separation of two bodies. If they overlap, about the normal is offered first: what
-/// leads from there to the normal itself takes most of the time.
+/// Returns the separation of two bodies. If they overlap, about the normal is offered as soon as it
+/// is known: what leads from there to the normal itself takes most of the time.
 /// @return nothing if the direction was taken
 std::optional<ConvexSeparation> separation_unless(const Support& a, const Support& b,
                                                   const Vec4& guess, double size,

@@ -24,6 +24,10 @@ constexpr int kMaxVertices = 256, kMaxFacets = 2048, kMaxHorizon = 1024;
 /// [units]; what is finer is for polishing.
 constexpr int kRoundVertices = 96;
 constexpr double kRoundGap = 1e-4;
+/// From so many vertices on the direction is offered at this gap [units], once: what converges fast
+/// needs no better start.
+constexpr int kRoughVertices = 32;
+constexpr double kRoughGap = 1e-3;
 
 /// Orthogonal to three vectors, as long as the content that they span is large; the side changes
 /// when two of them are exchanged.
@@ -99,7 +103,7 @@ class ExpandingPolytope {
         build_simplex();
     }
 
-    LeastOverlap run() {
+    std::optional<LeastOverlap> run(const TakesDirection& takes) {
         best_.depth = kNever;
         best_.is_exact = false;
         while (true) {
@@ -109,6 +113,10 @@ class ExpandingPolytope {
             if (low >= best_.depth - flat_) {
                 best_.is_exact = true;
                 break;
+            }
+            if (vertices_ >= kRoughVertices && best_.depth - low <= kRoughGap && !offered_) {
+                offered_ = true;
+                if (takes(best_.normal)) return std::nullopt;
             }
             if (vertices_ >= kRoundVertices && best_.depth - low <= kRoundGap) break;
             if (vertices_ == kMaxVertices) break;
@@ -282,15 +290,17 @@ class ExpandingPolytope {
     Memory& memory_;
     double flat_;
     LeastOverlap best_;
+    bool offered_ = false;
     int vertices_ = 0, facets_ = 0, free_ = 0, visible_ = 0, horizon_ = 0, expansion_ = 0;
 };
 
 }  // namespace
 
-LeastOverlap least_overlap(const MinkowskiDifference& difference,
-                           const std::array<DifferencePoint, 5>& start) {
+std::optional<LeastOverlap> least_overlap(const MinkowskiDifference& difference,
+                                          const std::array<DifferencePoint, 5>& start,
+                                          const TakesDirection& takes) {
     thread_local const std::unique_ptr<Memory> memory = std::make_unique<Memory>();
-    return ExpandingPolytope(difference, start, *memory).run();
+    return ExpandingPolytope(difference, start, *memory).run(takes);
 }
 
 }  // namespace tesserae

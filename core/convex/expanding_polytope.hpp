@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "core/convex/convex_separation.hpp"
 #include "core/convex/minkowski_difference.hpp"
 
 namespace tesserae {
@@ -27,7 +29,10 @@ struct LeastOverlap {
 /// to kRoundGap, or at the limits on vertices and facets if many directions overlap almost alike.
 /// @param start   5 points of the difference that span a simplex, which has the origin inside or on
 ///                its boundary
-LeastOverlap least_overlap(const MinkowskiDifference& difference,
-                           const std::array<DifferencePoint, 5>& start);
+/// @param takes   is offered the direction once the gap between the bounds is small
+/// @return nothing if the direction was taken
+std::optional<LeastOverlap> least_overlap(const MinkowskiDifference& difference,
+                                          const std::array<DifferencePoint, 5>& start,
+                                          const TakesDirection& takes);
 
 }  // namespace tesserae
