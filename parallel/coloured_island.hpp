@@ -2,14 +2,19 @@
 #pragma once
 
 #include "core/dynamics/solver/solver.hpp"
+#include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
 
 /// core's solve_impact(), solve_island() and drop_correction() of a coloured island on all threads:
 /// colour by colour, the contacts of a colour at once, with the same bits. What is left over is
 /// solved by one thread.
-void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island);
-void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island);
-void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island);
+/// @throws Stopped   the ranges' question was true; the island is then half solved
+void solve_coloured_impact(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Ranges& ranges);
+void solve_coloured_island(const Simulation& simulation, StepData& step, std::size_t island,
+                           const Ranges& ranges);
+void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
+                              const Ranges& ranges);
 
 }  // namespace tesserae::parallel

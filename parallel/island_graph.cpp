@@ -26,15 +26,20 @@ struct IslandGraph::Graph {
               const Trace::Span span(trace, kIslandsSpan, message.contacts);
               for (std::size_t i = message.begin; i < message.end; ++i) {
                   const std::uint32_t island = order[i];
-                  Work* const work = step->islands.is_coloured(island) ? of_coloured : of_plain;
-                  work(*simulation, *step, island);
+                  ranges.look_for_stop();
+                  if (step->islands.is_coloured(island))
+                      of_coloured(*simulation, *step, island, ranges);
+                  else
+                      of_plain(*simulation, *step, island);
               }
               return tbb::flow::continue_msg();
           }) {}
 
     const Simulation* simulation = nullptr;
     StepData* step = nullptr;
-    Work *of_plain = nullptr, *of_coloured = nullptr;
+    Ranges ranges;
+    Work* of_plain = nullptr;
+    ColouredWork* of_coloured = nullptr;
     Trace* trace = nullptr;
     std::vector<std::uint32_t> order;  ///< islands, those worth a message first, by falling size
     tbb::flow::graph graph;
@@ -44,10 +49,11 @@ struct IslandGraph::Graph {
 IslandGraph::IslandGraph() : graph_(std::make_unique<Graph>()) {}
 IslandGraph::~IslandGraph() = default;
 
-void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_plain,
-                      Work& of_coloured, Trace* trace) {
+void IslandGraph::run(const Simulation& simulation, StepData& step, const Ranges& ranges,
+                      Work& of_plain, ColouredWork& of_coloured, Trace* trace) {
     Graph& g = *graph_;
     g.trace = trace;
+    g.ranges = ranges;
     g.of_plain = &of_plain;
     g.of_coloured = &of_coloured;
     g.simulation = &simulation;
@@ -72,7 +78,12 @@ void IslandGraph::run(const Simulation& simulation, StepData& step, Work& of_pla
         g.node.try_put(message);
         begin = message.end;
     }
-    g.graph.wait_for_all();
+    try {
+        g.graph.wait_for_all();
+    } catch (...) {
+        g.graph.reset();
+        throw;
+    }
 }
 
 }  // namespace tesserae::parallel

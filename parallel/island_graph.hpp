@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/dynamics/step/step_data.hpp"
+#include "parallel/ranges.hpp"
 #include "parallel/trace.hpp"
 
 namespace tesserae::parallel {
@@ -22,9 +23,11 @@ class IslandGraph {
 
     /// Of one island: core's solve_island() or drop_correction(), and their like for coloured ones.
     using Work = void(const Simulation&, StepData&, std::size_t island);
+    using ColouredWork = void(const Simulation&, StepData&, std::size_t island, const Ranges&);
     /// Does the work for all islands of the step; every message is a span of the trace.
-    void run(const Simulation& simulation, StepData& step, Work& of_plain, Work& of_coloured,
-             Trace* trace = nullptr);
+    /// @throws Stopped   the work is to end
+    void run(const Simulation& simulation, StepData& step, const Ranges& ranges, Work& of_plain,
+             ColouredWork& of_coloured, Trace* trace = nullptr);
 
   private:
     struct Graph;

@@ -26,20 +26,20 @@ constexpr std::size_t kCrowded = 2;
 
 }  // namespace
 
-void KeptPairs::refresh(const Simulation& simulation, StepData& step) {
-    const std::size_t moved = held_ ? list_moved(step) : 0;
+void KeptPairs::refresh(const Simulation& simulation, StepData& step, const Ranges& ranges) {
+    const std::size_t moved = held_ ? list_moved(step, ranges) : 0;
     lasted_ = std::min(lasted_ + 1, kRare);
     if (!held_ || moved > 0) {
         const bool few = held_ && kFew * moved <= large_.size();
-        if (!few || !search_for_some(simulation, step)) search(simulation, step);
+        if (!few || !search_for_some(simulation, step, ranges)) search(simulation, step, ranges);
         lasted_ = 0;
     }
-    choose_pairs(simulation, step);
+    choose_pairs(simulation, step, ranges);
 }
 
-void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
+void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step, const Ranges& ranges) {
     lists_.collect(
-        kInRanges, candidates_.size(), kCandidateGrain,
+        ranges, candidates_.size(), kCandidateGrain,
         [&](Range range, std::vector<BodyPair>& list) {
             candidates_.for_each(range, [&](BodyId a, BodyId b) {
                 if (is_pair(simulation, step, a, b)) list.push_back({a, b});
@@ -49,9 +49,9 @@ void KeptPairs::choose_pairs(const Simulation& simulation, StepData& step) {
 }
 
 /// @return how many bodies have left their larger balls
-std::size_t KeptPairs::list_moved(const StepData& step) {
+std::size_t KeptPairs::list_moved(const StepData& step, const Ranges& ranges) {
     moved_.resize(large_.size());
-    for_each_range(large_.size(), kBallGrain, [&](Range range) {
+    ranges.for_each(large_.size(), kBallGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const Bounds &now = step.bounds[i], &large = large_[i];
             moved_[i] = !((now.centre - large.centre).norm() + now.radius <= large.radius);
@@ -68,17 +68,19 @@ void KeptPairs::enlarge(const Simulation& simulation, const StepData& step, std:
     large_[body].radius += std::min(kPart * type.radius + way, type.radius);
 }
 
-bool KeptPairs::search_for_some(const Simulation& simulation, const StepData& step) {
-    held_ = false;  // so it stays if the search fails for want of memory
+bool KeptPairs::search_for_some(const Simulation& simulation, const StepData& step,
+                                const Ranges& ranges) {
+    held_ = false;  // so it stays if the search is stopped or fails for want of memory
     for (std::size_t i = 0; i < large_.size(); ++i)
         if (moved_[i]) enlarge(simulation, step, i);
-    if (!sort_and_sweep_.replace_pairs_of(moved_, simulation, large_, candidates_)) return false;
+    if (!sort_and_sweep_.replace_pairs_of(moved_, simulation, large_, candidates_, ranges))
+        return false;
     held_ = true;
     ++searches_for_some_;
     return true;
 }
 
-void KeptPairs::search(const Simulation& simulation, StepData& step) {
+void KeptPairs::search(const Simulation& simulation, StepData& step, const Ranges& ranges) {
     held_ = false;
     // Where bodies are crowded and searches are rare these share memory with the rows.
     const auto shares = [&] {
@@ -86,10 +88,10 @@ void KeptPairs::search(const Simulation& simulation, StepData& step) {
     };
     if (shares() && !step.rows_in_use) release_rows(step);
     large_.resize(step.bounds.size());
-    for_each_range(large_.size(), kBallGrain, [&](Range range) {
+    ranges.for_each(large_.size(), kBallGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) enlarge(simulation, step, i);
     });
-    sort_and_sweep_.overlapping_pairs(simulation, large_, candidates_);
+    sort_and_sweep_.overlapping_pairs(simulation, large_, candidates_, ranges);
     if (shares()) sort_and_sweep_.release();
     held_ = true;
     ++searches_;

@@ -22,10 +22,11 @@ class KeptPairs {
     KeptPairs() : lasted_(kRare) {}
 
     /// step.pairs, from step.bounds.
-    void refresh(const Simulation& simulation, StepData& step);
+    void refresh(const Simulation& simulation, StepData& step, const Ranges& ranges = Ranges());
 
     /// step.pairs again, from bounds that are the same, after bodies woke.
-    void choose_pairs(const Simulation& simulation, StepData& step);
+    void choose_pairs(const Simulation& simulation, StepData& step,
+                      const Ranges& ranges = Ranges());
 
     /// The next step searches anew.
     void forget() { held_ = false; }
@@ -39,10 +40,10 @@ class KeptPairs {
     /// A search that comes so many steps after the last one is rare.
     static constexpr int kRare = 8;
 
-    std::size_t list_moved(const StepData& step);
+    std::size_t list_moved(const StepData& step, const Ranges& ranges);
     void enlarge(const Simulation& simulation, const StepData& step, std::size_t body);
-    bool search_for_some(const Simulation& simulation, const StepData& step);
-    void search(const Simulation& simulation, StepData& step);
+    bool search_for_some(const Simulation& simulation, const StepData& step, const Ranges& ranges);
+    void search(const Simulation& simulation, StepData& step, const Ranges& ranges);
 
     SortAndSweep sort_and_sweep_;
     bool held_ = false;                ///< whether there was a search that is not forgotten

@@ -31,11 +31,11 @@ ParallelStepper::ParallelStepper(Simulation simulation) : world_(std::move(simul
 
 ParallelStepper::~ParallelStepper() = default;
 
-StepReport ParallelStepper::step(double dt) {
+StepReport ParallelStepper::step(double dt, const StopQuestion* stop) {
     // A graph works in the arena that it is built in, and the first step is the first to know it.
     if (!schedule_) schedule_ = std::make_unique<ThreadedSchedule>();
     schedule_->set_trace(trace_);
-    return world_.step(dt, *schedule_);
+    return world_.step(dt, *schedule_, stop);
 }
 
 void ParallelStepper::forget_hints() {

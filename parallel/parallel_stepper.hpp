@@ -22,9 +22,10 @@ class ParallelStepper {
 
     /// Advances by dt [s], on the threads of the arena in which the first call is made: every call
     /// belongs inside run() of the same Threads.
+    /// @param stop               see Stepper
     /// @throws InputError        dt is not finite or not > 0
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
-    StepReport step(double dt);
+    StepReport step(double dt, const StopQuestion* stop = nullptr);
 
     /// Drops what is kept to make the next step faster. It changes no result.
     void forget_hints();

@@ -58,8 +58,10 @@ double padded(const Bounds& bounds) {
 }  // namespace
 
 void SortAndSweep::overlapping_pairs(const Simulation& simulation,
-                                     const std::vector<Bounds>& bounds, PairTable& pairs) {
+                                     const std::vector<Bounds>& bounds, PairTable& pairs,
+                                     const Ranges& ranges) {
     simulation_ = &simulation;
+    ranges_ = ranges;
     bounded_.clear();
     unbounded_.clear();
     for (BodyId id = 0; id < simulation.bodies.size(); ++id)
@@ -72,7 +74,7 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
     list_cells();
     find_first_cells();
     pair_lists_.collect(
-        kInRanges, items_.size(), kGrain,
+        ranges_, items_.size(), kGrain,
         [&](Range items, std::vector<BodyPair>& list) {
             sweep(items, list);
             add_unbounded(simulation, items, list);
@@ -83,9 +85,10 @@ void SortAndSweep::overlapping_pairs(const Simulation& simulation,
 
 bool SortAndSweep::replace_pairs_of(const std::vector<std::uint8_t>& moved,
                                     const Simulation& simulation, const std::vector<Bounds>& bounds,
-                                    PairTable& pairs) {
+                                    PairTable& pairs, const Ranges& ranges) {
     if (entries_.size() != bounded_.size() || !merge_entries(moved, bounds)) return false;
     simulation_ = &simulation;
+    ranges_ = ranges;
     make_items(simulation, bounds);
     list_cells();
     find_first_cells();
@@ -94,7 +97,7 @@ bool SortAndSweep::replace_pairs_of(const std::vector<std::uint8_t>& moved,
         for (std::size_t i = cells_[c].first; i < cells_[c + 1].first && !cells_[c].moved; ++i)
             if (moved[items_[i].id]) cells_[c].moved = true, moved_cells_.push_back(c);
     pair_lists_.collect(
-        kInRanges, moved_cells_.size(), kCellGrain,
+        ranges_, moved_cells_.size(), kCellGrain,
         [&](Range cells, std::vector<BodyPair>& list) { sweep_moved(moved, cells, list); }, found_);
     std::sort(found_.begin(), found_.end());
     replace_pairs(moved, found_, pairs, merged_pairs_);
@@ -180,7 +183,7 @@ SortAndSweep::Entry SortAndSweep::entry_of(BodyId id, std::size_t level, const B
 
 void SortAndSweep::sort_entries(const std::vector<Bounds>& bounds) {
     entries_.resize(bounded_.size());
-    for_each_range(bounded_.size(), kGrain, [&](Range range) {
+    ranges_.for_each(bounded_.size(), kGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const Bounds& ball = bounds[bounded_[i]];
             entries_[i] = entry_of(bounded_[i], level_of(2 * padded(ball)), ball);
@@ -213,7 +216,7 @@ bool SortAndSweep::merge_entries(const std::vector<std::uint8_t>& moved,
 
 void SortAndSweep::make_items(const Simulation& simulation, const std::vector<Bounds>& bounds) {
     items_.resize(entries_.size());
-    for_each_range(entries_.size(), kGrain, [&](Range range) {
+    ranges_.for_each(entries_.size(), kGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const BodyId id = entries_[i].id;
             const Vec4& centre = bounds[id].centre;
@@ -257,6 +260,7 @@ void SortAndSweep::sweep_moved(const std::vector<std::uint8_t>& moved, Range cel
     for (std::size_t k = cells.begin; k < cells.end; ++k) {
         const std::size_t c = moved_cells_[k], end = cells_[c + 1].first;
         for (std::size_t i = cells_[c].first; i < end; ++i) {
+            ranges_.look_for_stop();
             for (std::size_t j = i + 1; j < end && items_[j].lower <= items_[i].upper; ++j)
                 add_if_overlapping(items_[i], items_[j], pairs);
             if (moved[items_[i].id]) add_unbounded(*simulation_, {i, i + 1}, pairs);
@@ -430,7 +434,7 @@ void SortAndSweep::sort_pairs(std::size_t bodies, PairTable& sorted) {
     counting_sort(
         found_.size(), bodies, [&](std::size_t i) { return found_[i].a; }, first,
         [&](std::size_t i, std::size_t place) { second[place] = found_[i].b; });
-    for_each_range(bodies, kGrain, [&](Range range) {
+    ranges_.for_each(bodies, kGrain, [&](Range range) {
         for (std::size_t a = range.begin; a < range.end; ++a)
             std::sort(second.begin() + static_cast<std::ptrdiff_t>(first[a]),
                       second.begin() + static_cast<std::ptrdiff_t>(first[a + 1]));

@@ -34,7 +34,7 @@ class SortAndSweep {
     /// @param pairs    becomes all pairs that overlap and one of which contacts can
     ///                 move, and a few that miss each other by less than rounding
     void overlapping_pairs(const Simulation& simulation, const std::vector<Bounds>& bounds,
-                           PairTable& pairs);
+                           PairTable& pairs, const Ranges& ranges = Ranges());
 
     /// Searches again for the pairs of some bodies, where all others have the bounds of the last
     /// search. Takes little time if these are few.
@@ -42,7 +42,8 @@ class SortAndSweep {
     /// @param pairs   as it was found; its pairs of these bodies are replaced
     /// @return whether that was possible; else nothing has changed, and a search for all is due
     bool replace_pairs_of(const std::vector<std::uint8_t>& moved, const Simulation& simulation,
-                          const std::vector<Bounds>& bounds, PairTable& pairs);
+                          const std::vector<Bounds>& bounds, PairTable& pairs,
+                          const Ranges& ranges = Ranges());
 
     /// Gives back the memory that it keeps for the next search.
     void release();
@@ -104,6 +105,7 @@ class SortAndSweep {
     void sort_pairs(std::size_t bodies, PairTable& sorted);
 
     const Simulation* simulation_ = nullptr;   ///< of the search under way
+    Ranges ranges_;                            ///< of the search under way
     std::vector<BodyId> bounded_, unbounded_;  ///< ascending
     int sorted_axis_ = 0, cut_axis_[3] = {1, 2, 3};
     Vec4 origin_;                 ///< least coordinates of all centres [m]

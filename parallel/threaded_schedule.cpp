@@ -3,38 +3,38 @@
 
 #include "core/dynamics/solver/solver.hpp"
 #include "parallel/coloured_island.hpp"
-#include "parallel/ranges.hpp"
 
 namespace tesserae::parallel {
 
 void ThreadedSchedule::for_each_range(std::size_t count, std::size_t grain,
                                       FunctionRef<void(Range)> work) {
-    parallel::for_each_range(count, grain, work);
+    ranges().for_each(count, grain, work);
 }
 
 bool ThreadedSchedule::any_range(std::size_t count, std::size_t grain,
                                  FunctionRef<bool(Range)> test) {
-    return parallel::any_range(count, grain, test);
+    return ranges().any(count, grain, test);
 }
 
 void ThreadedSchedule::find_pairs(const Simulation& simulation, StepData& step) {
-    kept_pairs_.refresh(simulation, step);
+    kept_pairs_.refresh(simulation, step, ranges());
 }
 
 void ThreadedSchedule::choose_pairs(const Simulation& simulation, StepData& step) {
-    kept_pairs_.choose_pairs(simulation, step);
+    kept_pairs_.choose_pairs(simulation, step, ranges());
 }
 
 void ThreadedSchedule::solve_impacts(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, solve_impact, solve_coloured_impact, trace_);
+    island_graph_.run(simulation, step, ranges(), solve_impact, solve_coloured_impact, trace_);
 }
 
 void ThreadedSchedule::solve_islands(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, solve_island, solve_coloured_island, trace_);
+    island_graph_.run(simulation, step, ranges(), solve_island, solve_coloured_island, trace_);
 }
 
 void ThreadedSchedule::drop_corrections(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, drop_correction, drop_coloured_correction, trace_);
+    island_graph_.run(simulation, step, ranges(), drop_correction, drop_coloured_correction,
+                      trace_);
 }
 
 }  // namespace tesserae::parallel

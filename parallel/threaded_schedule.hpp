@@ -29,6 +29,8 @@ class ThreadedSchedule : public Schedule {
     void forget_hints() override { kept_pairs_.forget(); }
 
   private:
+    Ranges ranges() const { return Ranges(stop()); }
+
     KeptPairs kept_pairs_;
     IslandGraph island_graph_;
     Trace* trace_ = nullptr;

@@ -52,7 +52,17 @@ StepReport Stepper::step(double dt) {
     return step(dt, serial);
 }
 
-StepReport Stepper::step(double dt, Schedule& schedule) {
+StepReport Stepper::step(double dt, Schedule& schedule, const StopQuestion* stop) {
+    schedule.ask(stop);
+    try {
+        return whole_step(dt, schedule);
+    } catch (const Stopped&) {
+        clearances_ = {};  // they may be half of this step and half of the last one
+        throw;
+    }
+}
+
+StepReport Stepper::whole_step(double dt, Schedule& schedule) {
     if (simulation_.joints.broken != memory().broken)
         set_broken(simulation_.joints, bodies(), memory().broken);
     begin_step(simulation_, step_, dt);
@@ -267,6 +277,7 @@ void Stepper::keep_impulses(Schedule& schedule) {
 StepReport Stepper::finish_step(Schedule& schedule) {
     const Observed stage(*this, Stage::kFinishStep, step_.contacts.size());
     require_finite(schedule);
+    schedule.ask(nullptr);  // from here on the memory changes
     begin_report(step_);
     schedule.for_each_range(step_.contacts.size(), kReportPiece,
                             [&](Range contacts) { sum_contacts(step_, contacts); });

@@ -35,7 +35,9 @@ class Stepper {
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
     /// Advances by dt [s], with the work shared out by a schedule.
-    StepReport step(double dt, Schedule& schedule);
+    /// @param stop       is asked amid the step; null: nothing is
+    /// @throws Stopped   it was true; bodies() and memory() are then as before the call
+    StepReport step(double dt, Schedule& schedule, const StopQuestion* stop = nullptr);
 
     /// Lets an observer see every stage from the next step on; null ends this. It changes no
     /// result.
@@ -60,6 +62,7 @@ class Stepper {
   private:
     class Observed;
 
+    StepReport whole_step(double dt, Schedule& schedule);
     void advance_first_half(Schedule& schedule);
     void find_pairs(Schedule& schedule);
     void find_pairs_anew(Schedule& schedule);

@@ -79,7 +79,7 @@ class World::Inside {
     /// Has to be called before anything but contacts and joints turns bodies by a force.
     void begin_turning();
 
-    StepReport step(double dt);
+    StepReport step(double dt, const StopQuestion* stop = nullptr);
     /// Returns the bodies' arrays, and what keeps them alive.
     std::shared_ptr<const Stepper> stepper();
     const std::vector<ContactReading>& contacts();
@@ -95,7 +95,7 @@ class World::Inside {
     void begin_change_of_bodies();
     void take_out_removed();
     void wake_island(BodyId root);
-    StepReport do_step(double dt);
+    StepReport do_step(double dt, const StopQuestion* stop);
     std::vector<TouchingPair> touching_pairs();
 
     std::shared_ptr<Stepper> stepper_;  ///< shared with those who look at its arrays

@@ -8,23 +8,26 @@
 // How a World steps, and what it tells of contacts afterwards.
 namespace tesserae {
 
-StepReport World::Inside::do_step(double dt) {
-    if (!workers_) return stepper_->step(dt);
+StepReport World::Inside::do_step(double dt, const StopQuestion* stop) {
+    if (!workers_) {
+        Schedule serial;
+        return stepper_->step(dt, serial, stop);
+    }
     StepReport report;
     workers_->run([&] {
         if (!schedule_) schedule_ = workers_->schedule();
-        report = stepper_->step(dt, *schedule_);
+        report = stepper_->step(dt, *schedule_, stop);
     });
     return report;
 }
 
-StepReport World::Inside::step(double dt) {
+StepReport World::Inside::step(double dt, const StopQuestion* stop) {
     settle();
     StepReport report;
     has_contacts_ = true;
     contacts_.clear();
     try {
-        report = do_step(dt);
+        report = do_step(dt, stop);
     } catch (const LeftFiniteRange& error) {
         throw LeftFiniteRange(bodies_[error.body], error.time);
     }

@@ -267,6 +267,7 @@ JointReading World::joint(JointId joint) const {
 
 StepReport World::step() { return step(1 / settings().steps_per_second); }
 StepReport World::step(double dt) { return inside_->step(dt); }
+StepReport World::step(double dt, StopQuestion stop) { return inside_->step(dt, &stop); }
 double World::time() const { return inside_->simulation().memory.time; }
 
 std::span<const ContactReading> World::contacts() const {

@@ -13,6 +13,7 @@
 #include "core/dynamics/constraints/joint_description.hpp"
 #include "core/dynamics/step/report.hpp"
 #include "core/dynamics/step/settings.hpp"
+#include "core/stop.hpp"
 #include "core/world/readings.hpp"
 #include "core/world/workers.hpp"
 
@@ -122,6 +123,10 @@ class World {
     /// @throws InputError        dt is not finite or not > 0
     /// @throws LeftFiniteRange   as above
     StepReport step(double dt);
+    /// Advances by a time [s], unless it is told to stop.
+    /// @param stop       is asked again and again amid the step, by all threads of the workers
+    /// @throws Stopped   it was true; the world is then as before the call
+    StepReport step(double dt, StopQuestion stop);
     /// Returns the time of all steps [s].
     double time() const;
 

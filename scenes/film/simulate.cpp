@@ -100,9 +100,12 @@ const std::string& name_of_body(const Scene& scene, BodyId id) {
 }
 
 /// One step; a body that leaves the finite range is reported by its name.
-StepReport checked_step(const Scene& scene, parallel::ParallelStepper& world) {
+/// @throws Stopped   the watch says so, before the step or amid it
+StepReport checked_step(const Scene& scene, parallel::ParallelStepper& world, const Watch& watch) {
+    const auto is_stopped = [&] { return watch.is_stopped(); };
+    const StopQuestion stop = is_stopped;
     try {
-        return world.step(1.0 / scene.physics->steps_per_second);
+        return world.step(1.0 / scene.physics->steps_per_second, &stop);
     } catch (const LeftFiniteRange& error) {
         throw RunError(fmt::format("{} (body {} is of \"{}\")", error.what(), error.body,
                                    name_of_body(scene, error.body)));
@@ -110,29 +113,45 @@ StepReport checked_step(const Scene& scene, parallel::ParallelStepper& world) {
 }
 
 /// Says once, after a step that took long, which body makes it so: one that turns many times within
-/// a step, whose way is looked at in as many pieces.
+/// a step, whose way is looked at in as many pieces, or one that goes so far that it may meet very
+/// many others.
 class SlowSteps {
   public:
     SlowSteps(const Scene& scene, bool quiet) : scene_(scene), told_(quiet) {}
 
     void look_at(double seconds, const Bodies& bodies) {
-        constexpr double kLong = 0.5, kTurn = 6.283185307179586;  // [s], [rad]
+        constexpr double kLong = 0.5, kFullTurn = 6.283185307179586;  // [s], [rad]
+        constexpr double kFar = 10;                                   // [radii]
         if (told_ || seconds < kLong) return;
-        BodyId fastest = 0;
-        for (BodyId id = 0; id < bodies.size(); ++id)
-            if (norm(bodies.angular_velocity[id]) > norm(bodies.angular_velocity[fastest]))
-                fastest = id;
-        const double turns =
-            norm(bodies.angular_velocity[fastest]) / (kTurn * scene_.physics->steps_per_second);
-        if (!(turns > 1)) return;
-        told_ = true;
-        tell(
-            fmt::format("warning: a step took {}: \"{}\" turns {:.0f} times within it; with more "
-                        "steps_per_second a step takes less",
-                        duration_text(seconds), name_of_body(scene_, fastest), turns));
+        const double steps = scene_.physics->steps_per_second;
+        const auto turns = [&](BodyId id) {
+            return norm(bodies.angular_velocity[id]) / (kFullTurn * steps);
+        };
+        const auto radii = [&](BodyId id) {
+            return bodies.velocity[id].norm() / (bounding_radius(bodies.type_of(id).shape) * steps);
+        };
+        if (const BodyId id = most(bodies, turns); turns(id) > 1)
+            tell_of(id, seconds, fmt::format("turns {:.0f} times", turns(id)));
+        else if (const BodyId id = most(bodies, radii); radii(id) > kFar)
+            tell_of(id, seconds, fmt::format("goes {:.0f} times its radius", radii(id)));
     }
 
   private:
+    template <class Measure>
+    static BodyId most(const Bodies& bodies, const Measure& measure) {
+        BodyId most = 0;
+        for (BodyId id = 0; id < bodies.size(); ++id)
+            if (measure(id) > measure(most)) most = id;
+        return most;
+    }
+    void tell_of(BodyId id, double seconds, const std::string& what) {
+        told_ = true;
+        tell(
+            fmt::format("warning: a step took {}: \"{}\" {} within it; with more "
+                        "steps_per_second a step takes less",
+                        duration_text(seconds), name_of_body(scene_, id), what));
+    }
+
     const Scene& scene_;
     bool told_;
 };
@@ -168,7 +187,7 @@ void store_rows(const Scene& scene, const Plan& plan, TrajectoryWriter& writer,
             options.watch.look();
             if (world) {
                 const auto begin = std::chrono::steady_clock::now();
-                found = checked_step(scene, *world);
+                found = checked_step(scene, *world, options.watch);
                 const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
                 slow.look_at(took.count(), bodies);
             }

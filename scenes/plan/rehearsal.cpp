@@ -91,13 +91,14 @@ Rehearsal rehearse(const Scene& scene, const Plan& plan, std::uint64_t steps, do
     const double dt = 1 / scene.physics->steps_per_second;
     std::vector<StepCost> costs;
     std::uint64_t spacing = 1;
+    const auto is_stopped = [] { return stop_requested().load(std::memory_order_relaxed); };
+    const StopQuestion stop = is_stopped;
     const auto begin = Clock::now();
     parallel::ParallelStepper world(make_simulation(scene.bodies, *scene.physics, scene.joints));
     // One step at least, however late it is: without any there is nothing to guess from.
     while (rehearsal.taken < rehearsal.steps && (costs.empty() || since(begin) < seconds)) {
-        if (stop_requested()) throw Stopped();
         const auto step_begin = Clock::now();
-        const StepReport found = world.step(dt);
+        const StepReport found = world.step(dt, &stop);
         costs.push_back({since(step_begin), static_cast<double>(found.contacts)});
         if (++rehearsal.taken % spacing != 0) continue;
         rehearsal.poses.push_back({static_cast<double>(rehearsal.taken) * dt, world.bodies()});

@@ -23,11 +23,11 @@ void on_signal(int number) {
     alarm(kMostSeconds);
 }
 
-/// The work has not stopped: a step of many bodies, or of one that turns very fast, takes longer.
-/// Files bear an end at any moment.
+/// The work has not stopped: a row or a picture of very many bodies takes longer to write. Files
+/// bear an end at any moment.
 void on_alarm(int) {
     constexpr char kSaid[] =
-        "tesserae: ended amid a step after a signal; what was stored before is kept, the same "
+        "tesserae: ended amid work after a signal; what was stored before is kept, the same "
         "command continues\n";
     (void)!write(STDERR_FILENO, kSaid, sizeof kSaid - 1);
     _exit(128 + received);

@@ -16,9 +16,10 @@ struct Watch {
     /// Returns whether the work goes on.
     std::function<bool(std::uint64_t done, std::uint64_t total)> progress = {};
 
+    bool is_stopped() const { return stop->load(std::memory_order_relaxed); }
     /// @throws Stopped   the work is to end
     void look() const {
-        if (stop->load(std::memory_order_relaxed)) throw Stopped();
+        if (is_stopped()) throw Stopped();
     }
     /// Tells how far the work is.
     /// @throws Stopped   the work is to end

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <atomic>
 #include <chrono>
+#include <thread>
 
 #include "core/error.hpp"
 #include "parallel/world_threads.hpp"
@@ -19,6 +21,27 @@ using py::arg;
 /// Python is asked for signals, such as that of Ctrl-C, this often while a world steps, usual
 /// 20 ms: more often costs time, less often makes the user wait.
 constexpr std::chrono::milliseconds kBetweenSignals{20};
+
+/// Asks Python for signals amid steps: the thread that steps does, which alone may.
+class Signals {
+  public:
+    /// Returns whether a signal has raised an exception, which then is Python's.
+    bool have_raised() const {
+        if (raised_ || std::this_thread::get_id() != asking_) return raised_;
+        const auto now = std::chrono::steady_clock::now();
+        if (now < next_) return false;
+        next_ = now + kBetweenSignals;
+        const py::gil_scoped_acquire lock;
+        raised_ = PyErr_CheckSignals() != 0;
+        return raised_;
+    }
+
+  private:
+    const std::thread::id asking_ = std::this_thread::get_id();
+    mutable std::chrono::steady_clock::time_point next_ =
+        std::chrono::steady_clock::now() + kBetweenSignals;
+    mutable std::atomic<bool> raised_ = false;
+};
 
 RotationIntegrator integrator_of(const std::string& name) {
     if (name == "midpoint") return RotationIntegrator::kMidpoint;
@@ -46,16 +69,16 @@ py::object step(SharedWorld& self, std::optional<double> dt, std::int64_t steps)
     SharedWorld::Use use(self);
     const double time_step = dt ? *dt : 1 / use.world().settings().steps_per_second;
     StepReport report;
-    for (std::int64_t done = 0; done < steps;) {
-        {
-            const py::gil_scoped_release without_lock;
-            const auto begin = std::chrono::steady_clock::now();
-            do {
-                report = use.world().step(time_step);
-                ++done;
-            } while (done < steps && std::chrono::steady_clock::now() - begin < kBetweenSignals);
+    const Signals signals;
+    const auto have_raised = [&] { return signals.have_raised(); };
+    try {
+        const py::gil_scoped_release without_lock;
+        for (std::int64_t done = 0; done < steps; ++done) {
+            if (have_raised()) throw Stopped();  // a step of nothing asks nothing
+            report = use.world().step(time_step, have_raised);
         }
-        if (done < steps && PyErr_CheckSignals() != 0) throw py::error_already_set();
+    } catch (const Stopped&) {
+        throw py::error_already_set();
     }
     return record("StepReport", report.contacts, report.penetration, report.mean_penetration,
                   report.residual, report.asleep);
@@ -249,8 +272,8 @@ array([[ 0. , -3. ,  0. ,  0.2]])
 --
 
 Steps so many times, by dt [s] each or else by 1 / steps_per_second, and returns the StepReport of
-the last step. Other Python threads run meanwhile, and Ctrl-C stops it between two steps. RunError
-if a body became too fast or too far away: the world is then as before that step.
+the last step. Other Python threads run meanwhile. Ctrl-C stops it, also amid a step, and RunError
+comes if a body became too fast or too far away: the world is then as before that step.
 
 >>> world = ts.World()
 >>> world.step(0.5, steps=2).contacts

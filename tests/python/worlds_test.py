@@ -322,6 +322,23 @@ assert len({world.save() for world in worlds}) == 1
         self.assertGreater(world.time, 0)
         world.step()
 
+    def test_ctrl_c_stops_amid_a_step_which_then_has_done_nothing(self):
+        # A box that flies at 100 km/s into others makes all of them fast: a step takes seconds.
+        world = ts.World(threads=2)
+        box = ts.Hyperbox([0.3] * 4)
+        places = np.stack(np.meshgrid(*[np.arange(10)] * 4), -1).reshape(-1, 4)
+        world.add_many(box, position=0.31 * places + 1e-3 * np.sin(np.arange(40_000)).reshape(-1, 4))
+        world.add(box, position=[-3, 1, 1, 1], velocity=[1e5, 0, 0, 0])
+        world.step()
+        before = world.save()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        begin = time.perf_counter()
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            world.step()
+        self.assertLess(time.perf_counter() - begin, 1.2)
+        self.assertEqual(world.save(), before)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -36,6 +36,7 @@ void InternalEdges::correct(const Simulation& simulation, StepData& step, Schedu
 
     judge_.clear();
     for (auto begin = meetings_.begin(); begin != meetings_.end();) {
+        schedule.look_for_stop();
         const auto end = std::find_if(begin, meetings_.end(),
                                       [&](const Meeting& m) { return m.body != begin->body; });
         if (end - begin > 1) judge_.judge(simulation, step, {begin, end});

@@ -56,7 +56,7 @@ void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& sc
     if (fast_bodies_.empty()) return;
     stop_.assign(simulation.bodies.size(), kNoImpact);
     stopped_.clear();
-    take_impacts(simulation, step);
+    take_impacts(simulation, step, schedule);
 
     for (const BodyId id : stopped_) {
         const FreePath::State state = place_[id] == kUnlisted
@@ -184,7 +184,8 @@ void FastBodies::list_impacts() {
     for_each_met([&](std::uint32_t place, std::uint32_t i) { met_[first_met_[place + 1]++] = i; });
 }
 
-void FastBodies::take_impacts(const Simulation& simulation, const StepData& step) {
+void FastBodies::take_impacts(const Simulation& simulation, const StepData& step,
+                              const Schedule& schedule) {
     const auto later = [](const Impact& i, const Impact& j) {
         return std::tie(i.time, i.candidate) > std::tie(j.time, j.candidate);
     };
@@ -208,6 +209,7 @@ void FastBodies::take_impacts(const Simulation& simulation, const StepData& step
         for (std::size_t i = first; i < stopped_.size(); ++i) {
             const std::uint32_t place = place_[stopped_[i]];
             if (place == kUnlisted) continue;
+            schedule.look_for_stop();
             for (std::uint32_t met = first_met_[place]; met < first_met_[place + 1]; ++met) {
                 if (met_[met] == impact.candidate) continue;
                 looks -= looks > 0 ? 1 : 0;

@@ -49,7 +49,7 @@ class FastBodies {
     void find_paths(const Simulation& simulation, const StepData& step, Schedule& schedule);
     void find_impacts(Schedule& schedule);
     void list_impacts();
-    void take_impacts(const Simulation& simulation, const StepData& step);
+    void take_impacts(const Simulation& simulation, const StepData& step, const Schedule& schedule);
     void stop_at(const Simulation& simulation, const StepData& step, BodyId id, double time);
     void stop_all(const Simulation& simulation, const StepData& step, double time);
     std::size_t most_gaps() const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/dynamics/step/schedule.hpp"
 
+#include <algorithm>
+
 #include "core/dynamics/contacts/pairs.hpp"
 #include "core/dynamics/solver/solver.hpp"
 
@@ -14,12 +16,18 @@ const char* name_of(Stage stage) {
     return kNames[static_cast<std::size_t>(stage)];
 }
 
-void Schedule::for_each_range(std::size_t count, std::size_t, FunctionRef<void(Range)> work) {
-    work({0, count});
+void Schedule::for_each_range(std::size_t count, std::size_t grain, FunctionRef<void(Range)> work) {
+    if (stop_ == nullptr) return work({0, count});
+    for (std::size_t begin = 0; begin < count; begin += grain) {
+        look_for_stop();
+        work({begin, std::min(count, begin + grain)});
+    }
 }
 
-bool Schedule::any_range(std::size_t count, std::size_t, FunctionRef<bool(Range)> test) {
-    return test({0, count});
+bool Schedule::any_range(std::size_t count, std::size_t grain, FunctionRef<bool(Range)> test) {
+    bool any = false;
+    for_each_range(count, grain, [&](Range range) { any = any || test(range); });
+    return any;
 }
 
 void Schedule::find_pairs(const Simulation& simulation, StepData& step) {
@@ -31,18 +39,24 @@ void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
 }
 
 void Schedule::solve_impacts(const Simulation& simulation, StepData& step) {
-    for (std::size_t island = 0; island < step.islands.size(); ++island)
+    for (std::size_t island = 0; island < step.islands.size(); ++island) {
+        look_for_stop();
         solve_impact(simulation, step, island);
+    }
 }
 
 void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
-    for (std::size_t island = 0; island < step.islands.size(); ++island)
+    for (std::size_t island = 0; island < step.islands.size(); ++island) {
+        look_for_stop();
         solve_island(simulation, step, island);
+    }
 }
 
 void Schedule::drop_corrections(const Simulation& simulation, StepData& step) {
-    for (std::size_t island = 0; island < step.islands.size(); ++island)
+    for (std::size_t island = 0; island < step.islands.size(); ++island) {
+        look_for_stop();
         drop_correction(simulation, step, island);
+    }
 }
 
 }  // namespace tesserae

@@ -3,6 +3,7 @@
 
 #include "core/dynamics/step/step_data.hpp"
 #include "core/function_ref.hpp"
+#include "core/stop.hpp"
 
 namespace tesserae {
 
@@ -44,6 +45,13 @@ class Schedule {
   public:
     virtual ~Schedule() = default;
 
+    /// Sets the question that the functions below ask before each piece of work, and on a yes throw
+    /// Stopped; null: they ask none.
+    void ask(const StopQuestion* stop) { stop_ = stop; }
+    /// Asks it now, for work that is in no range.
+    /// @throws Stopped   the step is to end
+    void look_for_stop() const { tesserae::look_for_stop(stop_); }
+
     /// Calls work(Range) for ranges that cover 0 <= i < count once. Each range begins at a multiple
     /// of `grain` items. Items of different ranges do not depend on each other.
     virtual void for_each_range(std::size_t count, std::size_t grain,
@@ -64,6 +72,12 @@ class Schedule {
 
     /// Drops what is kept to make the next step faster. It changes no result.
     virtual void forget_hints() {}
+
+  protected:
+    const StopQuestion* stop() const { return stop_; }
+
+  private:
+    const StopQuestion* stop_ = nullptr;
 };
 
 }  // namespace tesserae

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signals and kills at any moment lose nothing: the same command ends with the same bytes.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -67,6 +68,55 @@ TEST(Interrupt, KillsLoseNothing) {
     const Outcome last = tesserae(command("out"));
     ASSERT_EQ(last.status, 0) << last.err;
     expect_same_results(folder, "straight", "out");
+}
+
+/// A heap of boxes into which one flies at 100 km/s: all become fast, and a step takes long.
+std::string slow_scene(int count, double duration) {
+    return fmt::format(R"(
+physics = {{ duration = {} }}
+render = {{ frames_per_second = 240 }}
+camera = {{ position = [0, 2, -20, 0] }}
+light = [{{ type = "sky" }}]
+body = [
+  {{ name = "bullet", shape = "hyperbox", size = [0.3, 0.3, 0.3, 0.3], position = [-3, 0, 0, 0], velocity = [1e5, 0, 0, 0] }},
+]
+lattice = [
+  {{ name = "heap", shape = "hyperbox", size = [0.3, 0.3, 0.3, 0.3], count = [{}, 10, 10, 10], spacing = 0.31, jitter = 0.01 }},
+]
+)",
+                       duration, count);
+}
+
+TEST(Interrupt, AStepThatTakesLongEndsAtOnce) {
+    const Folder folder("slow_step");
+    const std::string scene = folder.write("hit.toml", slow_scene(10, 1));
+    for (const int signal : {SIGTERM, SIGINT}) {
+        const Outcome outcome =
+            tesserae({"simulate", scene, "-o", folder.file("hit.h5"), "--quiet"}, signal, 1000);
+        EXPECT_EQ(outcome.status, 128 + signal);
+        EXPECT_NE(outcome.err.find("stopped by signal"), std::string::npos) << outcome.err;
+    }
+}
+
+TEST(InterruptSlow, WhatStopsAmidAStepGoesOnWithTheSameBytes) {
+    const Folder folder("slow_steps");
+    const std::string scene = folder.write("hit.toml", slow_scene(3, 0.0167));
+    const auto simulate = [&](const char* file, int signal = 0, int delay = 0) {
+        return tesserae({"simulate", scene, "-o", folder.file(file)}, signal, delay);
+    };
+    const Outcome straight = simulate("straight.h5");
+    ASSERT_EQ(straight.status, 0) << straight.err;
+    EXPECT_NE(straight.err.find("warning: a step took"), std::string::npos) << straight.err;
+    int stopped = 0;
+    for (int delay = 300; delay < 2000; delay += 400)
+        stopped += simulate("parts.h5", SIGTERM, delay).status == 143;
+    EXPECT_GE(stopped, 2);
+    ASSERT_EQ(simulate("parts.h5").status, 0);
+    const auto hash = [&](const char* file) {
+        const std::string out = tesserae({"hash", folder.file(file)}).out;
+        return out.substr(0, out.find_first_of(" \n"));
+    };
+    EXPECT_EQ(hash("parts.h5"), hash("straight.h5"));
 }
 
 }  // namespace
