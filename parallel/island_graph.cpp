@@ -24,9 +24,9 @@ struct IslandGraph::Graph {
     Graph()
         : node(graph, tbb::flow::unlimited, [this](const Message& message) {
               const Trace::Span span(trace, kIslandsSpan, message.contacts);
+              if (order.size() > 1) ranges.look_for_stop();
               for (std::size_t i = message.begin; i < message.end; ++i) {
                   const std::uint32_t island = order[i];
-                  ranges.look_for_stop();
                   if (step->islands.is_coloured(island))
                       of_coloured(*simulation, *step, island, ranges);
                   else

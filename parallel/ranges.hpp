@@ -18,7 +18,7 @@ inline bool is_alone() { return tbb::this_task_arena::max_concurrency() == 1; }
 /// Loops over ranges in parallel, which may be ended amid the work.
 class Ranges {
   public:
-    /// @param stop   is asked before each piece; null: nothing is
+    /// @param stop   is asked before each piece, where there are several; null: nothing is
     explicit Ranges(const StopQuestion* stop = nullptr) : stop_(stop) {}
 
     /// Calls work(Range) for pieces of at most `grain` items that cover 0 <= i < count, in
@@ -28,7 +28,7 @@ class Ranges {
     void for_each(std::size_t count, std::size_t grain, const Work& work) const {
         const std::size_t chunks = (count + grain - 1) / grain;
         const auto work_on = [&](std::size_t chunk) {
-            look_for_stop();
+            if (chunks > 1) look_for_stop();
             work(Range{chunk * grain, std::min(count, (chunk + 1) * grain)});
         };
         if (!is_alone()) return tbb::parallel_for(std::size_t{0}, chunks, work_on);

@@ -17,7 +17,7 @@ const char* name_of(Stage stage) {
 }
 
 void Schedule::for_each_range(std::size_t count, std::size_t grain, FunctionRef<void(Range)> work) {
-    if (stop_ == nullptr) return work({0, count});
+    if (stop_ == nullptr || count <= grain) return work({0, count});
     for (std::size_t begin = 0; begin < count; begin += grain) {
         look_for_stop();
         work({begin, std::min(count, begin + grain)});
@@ -40,21 +40,21 @@ void Schedule::choose_pairs(const Simulation& simulation, StepData& step) {
 
 void Schedule::solve_impacts(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < step.islands.size(); ++island) {
-        look_for_stop();
+        if (island > 0) look_for_stop();
         solve_impact(simulation, step, island);
     }
 }
 
 void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < step.islands.size(); ++island) {
-        look_for_stop();
+        if (island > 0) look_for_stop();
         solve_island(simulation, step, island);
     }
 }
 
 void Schedule::drop_corrections(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < step.islands.size(); ++island) {
-        look_for_stop();
+        if (island > 0) look_for_stop();
         drop_correction(simulation, step, island);
     }
 }

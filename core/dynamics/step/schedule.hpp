@@ -45,8 +45,8 @@ class Schedule {
   public:
     virtual ~Schedule() = default;
 
-    /// Sets the question that the functions below ask before each piece of work, and on a yes throw
-    /// Stopped; null: they ask none.
+    /// Sets the question that the functions below ask before each piece of work, where there are
+    /// several, and on a yes throw Stopped; null: they ask none.
     void ask(const StopQuestion* stop) { stop_ = stop; }
     /// Asks it now, for work that is in no range.
     /// @throws Stopped   the step is to end
