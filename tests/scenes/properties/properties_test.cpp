@@ -137,9 +137,10 @@ TEST(MassesSlow, ScaleBitForBit) { expect_of_all(kMasses, kMany); }
 TEST(TimesSlow, ScaleBitForBit) { expect_of_all(properties::fault_of_slowing, kMany); }
 TEST(PartingSlow, ChangesNoBit) { expect_of_all(properties::fault_of_parting, kMany); }
 TEST(NumberingSlow, ChangesNoBit) { expect_of_all(properties::fault_of_numbering, kMany); }
-/// One is off by 6e-6: conjugate directions carry on what float has rounded.
+/// Of the 6000 scenes after these, 3113, 4698, 6699 and 7469 are off, by 5e-6 to 7e-6: conjugate
+/// directions carry on what float has rounded.
 TEST(MomentumSlow, ComesFromGravityAndWhatIsHeld) {
-    expect_of_all(properties::fault_of_momentum, kMany, {1441});
+    expect_of_all(properties::fault_of_momentum, kMany);
 }
 /// One does not converge in its sweeps, and parts by 4e-6 m/s where its residual is 3e-4 m/s: the
 /// masses of friction are kept to eight bits, in frames that depend on the axes.
