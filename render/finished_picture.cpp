@@ -2,11 +2,10 @@
 #include "render/finished_picture.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "core/error.hpp"
 #include "core/file/file_writer.hpp"
+#include "core/file/read_file.hpp"
 #include "render/picture_inside.hpp"
 
 namespace tesserae {
@@ -119,10 +118,7 @@ Picture Picture::read(const fs::path& exr) {
                 }
         }
     });
-    std::ifstream file(exr, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    inside->image = std::move(bytes).str();
+    inside->image = read_file(exr);
     inside->preview = preview_of(*inside);
     return Picture(inside);
 }

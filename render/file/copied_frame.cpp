@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/file/copied_frame.hpp"
 
-#include <fstream>
-#include <sstream>
-
-#include "core/error.hpp"
 #include "core/file/file_writer.hpp"
+#include "core/file/read_file.hpp"
 #include "render/camera/camera.hpp"
 #include "render/file/exr_writer.hpp"
 #include "render/file/preview_file.hpp"
@@ -14,11 +11,7 @@ namespace tesserae::render {
 namespace {
 
 void copy_bytes(const std::filesystem::path& from, const std::filesystem::path& to) {
-    std::ifstream in(from, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    if (!in) throw RunError(fmt::format("{}: cannot be read", from.string()));
-    write_file(to, bytes.view());
+    write_file(to, read_file(from));
 }
 
 }  // namespace

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "core/dynamics/motion_version.hpp"
 #include "core/error.hpp"
+#include "core/file/read_file.hpp"
 #include "scenes/farm/estimate.hpp"
 #include "scenes/farm/scripts.hpp"
 #include "scenes/farm/submit.hpp"
@@ -54,7 +55,8 @@ int motion_version_of(const fs::path& folder, bool moves) {
 
 /// How many tasks of the submitted jobs run and wait.
 void ask_slurm(const fs::path& folder, FilmStatus& status) {
-    std::ifstream in(folder / "submit" / "jobs");
+    const fs::path file = folder / "submit" / "jobs";
+    std::istringstream in(fs::exists(file) ? read_file(file) : "");
     std::string jobs;
     for (std::string line; std::getline(in, line);)
         if (!line.empty() && line.find_first_not_of("0123456789") == std::string::npos)

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes/film/film_folder.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/file/read_file.hpp"
 #include "render/file/preview_file.hpp"
 #include "render/file/whole_image.hpp"
 #include "scenes/load/effective.hpp"
@@ -50,16 +48,6 @@ std::string other_frame(const Scene& scene, const render::ImageInfo& there,
 }
 
 }  // namespace
-
-std::string read_file(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    // An empty file gives nothing, which is no failure of reading.
-    if (!in.is_open() || bytes.bad())
-        throw RunError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-    return bytes.str();
-}
 
 Scene scene_of_film(const fs::path& file) {
     return load_scene_text(file, without_solver(read_scene_file(file)), {});
@@ -115,7 +103,8 @@ bool is_frame_of(const Scene& scene, const render::ImageInfo& there, int frame) 
 std::vector<int> wanted_frames(const Scene& scene, const fs::path& folder) {
     std::string text;
     for (const fs::path& file : {folder / "submit" / "tasks.txt", folder / kFramesFile}) {
-        std::ifstream in(file);
+        if (!fs::exists(file)) continue;
+        std::istringstream in(read_file(file));
         for (std::string line; std::getline(in, line);) text += (text.empty() ? "" : ",") + line;
         if (!text.empty()) break;
     }

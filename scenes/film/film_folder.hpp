@@ -35,10 +35,6 @@ std::string require_folder_of(const Scene& scene, const std::filesystem::path& f
 /// @param file   the kSceneFile of a film, or of its jobs
 Scene scene_of_film(const std::filesystem::path& file);
 
-/// The bytes of a file.
-/// @throws RunError   with the path and the system's reason
-std::string read_file(const std::filesystem::path& file);
-
 /// Makes a folder and those above it.
 /// @throws RunError   with the path and the system's reason
 void create_folder(const std::filesystem::path& folder);

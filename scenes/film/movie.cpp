@@ -21,6 +21,7 @@
 
 #include "core/error.hpp"
 #include "core/file/partial_file.hpp"
+#include "core/file/read_file.hpp"
 #include "render/file/image_info.hpp"
 #include "scenes/film/film_folder.hpp"
 #include "scenes/load/effective.hpp"

@@ -2,10 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "core/error.hpp"
+#include "core/file/read_file.hpp"
 #include "scenes/film/frame_in_memory.hpp"
 #include "scenes/plan/plan.hpp"
 #include "scenes/python/running.hpp"
@@ -45,9 +43,7 @@ std::string page_text(const scenes::Scene& scene, const fs::path& trajectory,
     options.quiet = true;
     const fs::path file = folder / "view.html";
     scenes::write_view(scene, trajectory, file, options);
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
+    return read_file(file);
 }
 
 py::object page_of(const std::string& text, int height) {
