@@ -61,6 +61,7 @@ std::vector<BodyMesh> meshes_of(const Scene& scene, const Bodies& bodies, const 
                                 const SliceFrame& frame) {
     std::vector<Mesh> each(bodies.size());
     tbb::parallel_for(std::size_t{0}, each.size(), [&](std::size_t i) {
+        if (stop_requested()) throw Stopped();  // very many bodies take seconds
         const auto id = static_cast<BodyId>(i);
         if (scene.appearance[bodies.type[id]].visible) each[i] = sections.of(bodies, id, frame);
     });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -136,6 +137,9 @@ bool has_mesh_hash(const std::filesystem::path& file, const std::string& hash) {
     std::string begin(400, '\0');
     std::ifstream in(file, std::ios::binary);
     in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    if (in.bad())
+        throw InputError(
+            fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
     return begin.find(hash) != std::string::npos;
 }
 

@@ -130,8 +130,8 @@ class SlowSteps {
         const auto radii = [&](BodyId id) {
             return bodies.velocity[id].norm() / (bounding_radius(bodies.type_of(id).shape) * steps);
         };
-        if (const BodyId id = most(bodies, turns); turns(id) > 1)
-            tell_of(id, seconds, fmt::format("turns {:.0f} times", turns(id)));
+        if (const BodyId turning = most(bodies, turns); turns(turning) > 1)
+            tell_of(turning, seconds, fmt::format("turns {:.0f} times", turns(turning)));
         else if (const BodyId id = most(bodies, radii); radii(id) > kFar)
             tell_of(id, seconds, fmt::format("goes {:.0f} times its radius", radii(id)));
     }

@@ -2,7 +2,9 @@
 #include "scenes/view/view.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 
 #include "core/error.hpp"
@@ -117,6 +119,9 @@ void require_page(const fs::path& file, bool overwrite) {
     std::ifstream in(file, std::ios::binary);
     std::string beginning(2000, '\0');
     in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    if (in.bad())
+        throw InputError(
+            fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
     if (page_hash(beginning).empty())
         throw InputError(fmt::format(
             "{}: is no page that tesserae view has made; choose another name, or --overwrite",

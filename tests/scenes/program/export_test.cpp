@@ -391,6 +391,9 @@ TEST_F(ExportProgram, RefusesWhatItCannotDoRight) {
     expect(exported("ply", "mixed", {"--tolerance", "0.1"}), 2, "--overwrite");
     EXPECT_EQ(exported("ply", "mixed", {"--tolerance", "0.1", "--overwrite"}).status, 0);
     EXPECT_EQ(exported("ply", "mixed", {"--tolerance", "0.1"}).status, 0);
+    // What cannot be read is not taken for another scene's: a folder can be opened, and not read.
+    fs::create_directories(file("unread/each.0000.ply"));
+    expect(exported("ply", "unread", {"--frames", "0"}), 2, "cannot be read: Is a directory");
     folder_->write("not_a_folder", "x");
     expect(exported("ply", "not_a_folder"), 1, "not_a_folder");
 }
