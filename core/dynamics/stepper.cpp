@@ -54,6 +54,7 @@ StepReport Stepper::step(double dt) {
 
 StepReport Stepper::step(double dt, Schedule& schedule, const StopQuestion* stop) {
     schedule.ask(stop);
+    schedule.look_for_stop();
     try {
         return whole_step(dt, schedule);
     } catch (const Stopped&) {

@@ -35,7 +35,7 @@ class Stepper {
     /// @throws LeftFiniteRange   bodies() and memory() are then as before the call
     StepReport step(double dt);
     /// Advances by dt [s], with the work shared out by a schedule.
-    /// @param stop       is asked amid the step; null: nothing is
+    /// @param stop       is asked first and amid the step; null: nothing is
     /// @throws Stopped   it was true; bodies() and memory() are then as before the call
     StepReport step(double dt, Schedule& schedule, const StopQuestion* stop = nullptr);
 

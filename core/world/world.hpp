@@ -124,7 +124,9 @@ class World {
     /// @throws LeftFiniteRange   as above
     StepReport step(double dt);
     /// Advances by a time [s], unless it is told to stop.
-    /// @param stop       is asked again and again amid the step, by all threads of the workers
+    /// @param stop       is asked first, and where there is much work again and again amid the
+    /// step,
+    ///                   by all threads of the workers
     /// @throws Stopped   it was true; the world is then as before the call
     StepReport step(double dt, StopQuestion stop);
     /// Returns the time of all steps [s].
