@@ -18,18 +18,23 @@ void require_header(bool good, const char* what) {
     if (!good) throw std::runtime_error(what);
 }
 
+/// The system has not failed.
+void require_system(bool good) {
+    if (!good) throw ReadFailure(std::strerror(errno));
+}
+
 /// Reads a file from its beginning to the end of its headers.
 class HeaderWalk {
   public:
     explicit HeaderWalk(const std::filesystem::path& path)
         : in_(path, std::ios::binary), bytes_(std::filesystem::file_size(path)) {
-        require_header(in_.good(), std::strerror(errno));
+        require_system(in_.good());
     }
 
     std::int32_t number() {
         std::int32_t value = 0;
         in_.read(reinterpret_cast<char*>(&value), sizeof value);
-        require_header(!in_.bad(), std::strerror(errno));
+        require_system(!in_.bad());
         return value;
     }
     /// Attributes as name, type, length and value up to an empty name (OpenEXR File Layout).
@@ -105,7 +110,8 @@ class HeaderWalk {
 
     /// A file that ends too early is cut off, unless it is the system that fails.
     void require_whole(bool good) const {
-        require_header(good, in_.bad() ? std::strerror(errno) : "its header is cut off");
+        require_system(!in_.bad());
+        require_header(good, "its header is cut off");
     }
 
     std::ifstream in_;

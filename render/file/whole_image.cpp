@@ -2,7 +2,9 @@
 #include "render/file/whole_image.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
@@ -25,10 +27,19 @@ T number(std::istream& in) {
 /// Flags of the version (OpenEXR's "File Layout").
 constexpr std::uint32_t kTiled = 0x200, kDeep = 0x800, kSeveralParts = 0x1000;
 
+/// The system has not failed.
+void require_read(const std::ifstream& in, const std::filesystem::path& file) {
+    if (!in.is_open() || in.bad())
+        throw InputError(
+            fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+}
+
 /// Where the header ends; none: it is cut off or damaged.
 std::optional<std::uint64_t> end_of_header(const std::filesystem::path& file) {
     try {
         return checked_exr_header(file).end;
+    } catch (const ReadFailure& failure) {
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), failure.what()));
     } catch (const std::runtime_error&) {
         return {};
     }
@@ -38,7 +49,9 @@ std::optional<std::uint64_t> end_of_header(const std::filesystem::path& file) {
 
 bool is_whole_image(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
-    if (number<std::uint32_t>(in) != 20000630u || !in)
+    const auto magic = number<std::uint32_t>(in);
+    require_read(in, file);
+    if (magic != 20000630u || !in)
         throw InputError(fmt::format("{}: not a readable OpenEXR image", file.string()));
     const auto version = number<std::uint32_t>(in);
     if ((version & (kDeep | kSeveralParts)) != 0) return true;
@@ -50,6 +63,7 @@ bool is_whole_image(const std::filesystem::path& file) {
     std::uint64_t first = size, last = 0;
     for (std::uint64_t at = begin; at + sizeof(std::uint64_t) <= first; at += sizeof at) {
         const auto offset = number<std::uint64_t>(in);
+        require_read(in, file);
         if (!in || offset < begin || offset >= size) return false;
         first = std::min(first, offset), last = std::max(last, offset);
     }
@@ -58,6 +72,7 @@ bool is_whole_image(const std::filesystem::path& file) {
     const std::uint64_t place = (version & kTiled) != 0 ? 4 : 1;
     in.seekg(static_cast<std::streamoff>(last + place * sizeof(std::int32_t)));
     const auto bytes = number<std::int32_t>(in);
+    require_read(in, file);
     return in && bytes >= 0 &&
            last + (place + 1) * sizeof(std::int32_t) + static_cast<std::uint64_t>(bytes) <= size;
 }

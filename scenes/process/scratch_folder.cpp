@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/error.hpp"
@@ -36,6 +37,13 @@ bool is_old(int folder) {
     return ::fstat(folder, &about) == 0 && about.st_mtime < std::time(nullptr) - kSeconds;
 }
 
+/// What std::filesystem::temp_directory_path() has looked at.
+std::string asked_place() {
+    for (const char* name : {"TMPDIR", "TMP", "TEMP", "TEMPDIR"})
+        if (const char* const place = std::getenv(name)) return place;
+    return "/tmp";
+}
+
 void remove_leftovers(const fs::path& place, const std::string& prefix) {
     std::error_code error;
     for (fs::directory_iterator at(place, error), end; !error && at != end; at.increment(error)) {
@@ -54,8 +62,8 @@ ScratchFolder::ScratchFolder(const std::string& prefix) {
     std::error_code error;
     const fs::path place = fs::temp_directory_path(error);
     if (error)
-        throw RunError(
-            fmt::format("no folder for temporary files: {}; set TMPDIR to one", error.message()));
+        throw RunError(fmt::format("{}: no folder for temporary files: {}; set TMPDIR to one",
+                                   asked_place(), error.message()));
     remove_leftovers(place, prefix);
     std::string name = (place / (prefix + "XXXXXX")).string();
     if (::mkdtemp(name.data()) == nullptr)

@@ -76,6 +76,9 @@ def complaint_about(job, fault):
         return f"exit status 2 is for a wrong command line or file: {outcome.err.strip()}", True
     if fault.how in HARMLESS and fault.family != "open" and not succeeded:
         return f"nothing failed, but it ends with {outcome.status}: {outcome.err.strip()}", True
+    if job.name == "status" and outcome.status == 1:  # its answer: frames that cannot be read are invalid
+        answers = re.search(r"^(missing|invalid) +[1-9]", outcome.out, re.M)
+        return None if answers else f"what is not complete is not told: {outcome.out}", True
     if not succeeded:
         names_file, names_reason = says(outcome.err, fault, outcome)
         if not outcome.err.strip():
@@ -100,7 +103,8 @@ def complaint_about(job, fault):
              if name.endswith(".partial") and (job.now / name).stat().st_size == 0]
     if empty and fault.family not in ("unlink", "open", "stat", "lock"):
         return f"leaves empty: {', '.join(empty)}", True
-    return job.complaint_of_end(), True
+    # What could not be removed among temporary files goes when it is a minute old.
+    return job.complaint_of_end(counts_temporary=fault.how != "EACCES"), True
 
 
 # What is printed by these depends on what is in files alone.

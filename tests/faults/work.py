@@ -353,7 +353,7 @@ class Setup:
             Job(self, "submit", ["submit", "s.toml", "-o", "film", "--for", "commands", *one]),
             Job(self, "plan", ["plan", "s.toml", *one]),
             Job(self, "generate", ["generate", "pile", "--bodies", 20], out="pile.toml"),
-            Job(self, "status", ["status", "film", *one], filmed),
+            Job(self, "status", ["status", "film"], filmed),
             Job(self, "info scene", ["info", "s.toml", *one]),
             Job(self, "info trajectory", ["info", "in.h5", *one], simulated),
             Job(self, "info frame", ["info", "film/frames/s.0000.exr", *one], rendered),

@@ -19,6 +19,7 @@
 
 #include "core/error.hpp"
 #include "render/file/image_info.hpp"
+#include "render/file/whole_image.hpp"
 #include "tests/error_of.hpp"
 #include "tests/render/test_scene.hpp"
 #include "tests/temporary_folder.hpp"
@@ -191,6 +192,16 @@ TEST_F(ImagePixelsTest, RefusesWhatIsNotCompared) {
 
 void write(const fs::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST(WholeImage, IsNotSaidToBeCutWhereItCannotBeRead) {
+    const tesserae::testing::TemporaryFolder folder("whole_image");
+    const fs::path missing = folder / "missing.exr";
+    EXPECT_EQ(error_of<InputError>([&] { is_whole_image(missing); }),
+              missing.string() + ": cannot be read: No such file or directory");
+    // A folder can be opened and not read.
+    EXPECT_EQ(error_of<InputError>([&] { is_whole_image(folder.path()); }),
+              folder.path().string() + ": cannot be read: Is a directory");
 }
 
 TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {

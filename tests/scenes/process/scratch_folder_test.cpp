@@ -10,6 +10,8 @@
 #include <optional>
 #include <set>
 
+#include "core/error.hpp"
+#include "tests/error_of.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace tesserae::scenes {
@@ -52,6 +54,14 @@ TEST_F(ScratchFolders, AreOfTheirOwnerAloneAndGoneInTheEnd) {
         EXPECT_EQ(there().size(), 2u);
     }
     EXPECT_TRUE(there().empty());
+}
+
+TEST_F(ScratchFolders, NeedAPlaceThatIsThere) {
+    const std::string missing = folder_.path() / "missing";
+    ::setenv("TMPDIR", missing.c_str(), 1);
+    EXPECT_EQ(
+        tesserae::testing::error_of<RunError>([] { ScratchFolder folder("work-"); }),
+        missing + ": no folder for temporary files: No such file or directory; set TMPDIR to one");
 }
 
 TEST_F(ScratchFolders, LeftByAKilledProcessAreRemoved) {
