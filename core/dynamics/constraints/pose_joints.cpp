@@ -53,8 +53,7 @@ class PosedPart {
     void pose() {
         out_.a = out_.place_a = joint_.a;
         out_.b = out_.place_b = joint_.b;
-        out_.r_a = coordinates_.anchor - a_.position;
-        out_.r_b = coordinates_.anchor - b_.position;
+        place_anchor();
         out_.size = 0;
         out_.compliance = 0;
         out_.most = 0;
@@ -74,7 +73,24 @@ class PosedPart {
         return held_values(values_at(step_.h)) - (1 - part_taken(now)) * now;
     }
 
+    void pose_ahead() {
+        a_ = moved_on(a_, step_.h), b_ = moved_on(b_, step_.h);
+        coordinates_ =
+            std::visit([&](const auto& kind) { return coordinates_of(kind, a_, b_); }, joint_.kind);
+        place_anchor();
+        out_.size = 0;
+        add_held_rows(held_of(joint_));
+    }
+
   private:
+    void place_anchor() {
+        out_.r_a = coordinates_.anchor - a_.position;
+        out_.r_b = coordinates_.anchor - b_.position;
+    }
+    void add_held_rows(std::uint16_t held) {
+        for (int i = 0; i < coordinates_.size; ++i)
+            if ((held >> i & 1) != 0) add_row(i, unit_of(i));
+    }
     /// Adds a multiple of a coordinate's row.
     void add_row(int coordinate, double factor) {
         const Wrench& row = coordinates_.rows[static_cast<std::size_t>(coordinate)];
@@ -151,8 +167,7 @@ class PosedPart {
 
     void hold(std::uint16_t held) {
         out_.set = ImpulseSet::kAll;
-        for (int i = 0; i < coordinates_.size; ++i)
-            if ((held >> i & 1) != 0) add_row(i, unit_of(i));
+        add_held_rows(held);
         out_.holds_point =
             std::holds_alternative<PointJoint>(joint_.kind) && out_.size == PointJoint::kSize;
         aim(held_values(coordinates_.values), held_values(bends()));
@@ -225,6 +240,10 @@ void pose_joints(const Simulation& simulation, StepData& step, std::size_t begin
 
 RowVector missed_by(const Simulation& simulation, const StepData& step, const Constraint& held) {
     return PosedPart(simulation, step, held).missed();
+}
+
+void pose_ahead(const Simulation& simulation, const StepData& step, Constraint& held) {
+    PosedPart(simulation, step, held).pose_ahead();
 }
 
 }  // namespace tesserae

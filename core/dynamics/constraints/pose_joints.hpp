@@ -23,5 +23,8 @@ void pose_joints(const Simulation& simulation, StepData& step, std::size_t begin
 /// Returns by how much a posed constraint that holds misses in the middle of the next sub-step,
 /// beyond what its aim leaves of an error, if the bodies go on as they move now.
 RowVector missed_by(const Simulation& simulation, const StepData& step, const Constraint& held);
+/// Sets the rows and the anchor of a posed constraint that holds to those in the middle of the next
+/// sub-step, if the bodies go on as they move now.
+void pose_ahead(const Simulation& simulation, const StepData& step, Constraint& held);
 
 }  // namespace tesserae

@@ -22,6 +22,9 @@ namespace tesserae {
 /// Wright, "Numerical optimization", 2006, 17.3). A spring gives way by its compliance: its s is
 /// less.
 ///
+/// Joints hold in the middle of the next sub-step (Newton's method). Where light links whip round
+/// so fast that no impulses along the present rows achieve this, the rows are those at that time.
+///
 /// A light body between strong pulls swings across them faster than the step can follow. Where it
 /// would, its inertia gets the part h^2/4 K, with K the moment of the pulls by an angle (geometric
 /// stiffness: M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34, 2015): the
@@ -33,16 +36,17 @@ class JointBlock {
   public:
     /// Prepares the block for an island whose constraints are posed.
     /// @param constraints   numbers in step.constraints
+    /// @param follows_impact   of a load: an impact of the island preceded it
     /// @return whether it is one to solve so: few blocks have to be eliminated. Then
     ///         Constraint::in_block is set.
     bool begin(const Simulation& simulation, StepData& step,
-               std::span<const std::uint32_t> constraints, Cause cause);
+               std::span<const std::uint32_t> constraints, Cause cause, bool follows_impact);
 
     /// Solves all rows at the bodies' present motion, and applies what their impulses change.
     /// @return the largest change of a row's velocity [m/s, rad/s]
     double sweep(const Simulation& simulation, StepData& step, Pass pass);
-    /// Takes back what a load has added to the bodies that joints do not: see JointGain.
-    void end_load(const Simulation& simulation, StepData& step);
+    /// Takes back what the block has added to the bodies that joints do not: see JointGain.
+    void end(const Simulation& simulation, StepData& step);
 
     /// Returns whether bodies have got geometric stiffness.
     bool has_stiffness() const { return !stiffness_.empty(); }
@@ -81,10 +85,18 @@ class JointBlock {
     void list_stiffness(const StepData& step);
     void factorize();
     void solve();
+    void set_changes();
     double answer_of(const Joint& joint, const Row& row) const;
     double solve_direct(const Simulation& simulation, StepData& step);
     void solve_directly(const Simulation& simulation, StepData& step);
     double farthest_miss(const Simulation& simulation, const StepData& step);
+    static RowVector velocities_of(const StepData& step, const Constraint& c);
+    /// What is left of its aim.
+    static RowVector left_of(const StepData& step, const Constraint& c);
+    bool turns_far(const Simulation& simulation, const StepData& step) const;
+    void list_rows_ahead(const Simulation& simulation, const StepData& step);
+    void add_moments_of_rows_ahead(const StepData& step);
+    void project(const Simulation& simulation, StepData& step);
     void aim_again(const Simulation& simulation, StepData& step);
     double solve_bounded(const Simulation& simulation, StepData& step, const Bounded& bounded);
     void apply(const Simulation& simulation, StepData& step) const;
@@ -99,11 +111,13 @@ class JointBlock {
     std::vector<Bounded> bounded_;
     std::vector<double> answers_;
     std::vector<std::pair<std::size_t, Part>> stiffness_;  ///< of a body: the sum of part part^T
+    std::vector<double> moments_;                          ///< along stiffness_
     std::vector<Angles> pulls_;                            ///< K of every body
     std::vector<Part> motion_;
     std::vector<RowVector> aims_;       ///< of joints_
     std::vector<RowVector> missed_by_;  ///< of joints_; empty where they do not aim again
-    bool fails_to_hold_ = false;        ///< of the last sweep
+    int projections_ = 0;               ///< of the load so far
+    bool has_uneven_work_ = false;      ///< it may gain energy
     JointGain gain_;
     BlockCholesky matrix_;
 };

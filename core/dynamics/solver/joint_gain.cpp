@@ -33,12 +33,12 @@ struct JointGain::Frame {
 };
 
 void JointGain::begin(const Simulation& simulation, const StepData& step,
-                      std::span<const BodyId> bodies) {
+                      std::span<const BodyId> bodies, Cause cause) {
     has_given_ = false;
     moved_.clear();
     groups_.clear();
     for (const BodyId id : bodies) {
-        const double part = simulation.type_of(id).gravity_scale;
+        const double part = cause == Cause::kLoad ? simulation.type_of(id).gravity_scale : 0;
         const BodyMotion by_gravity = {part * step.h * simulation.settings.gravity, {}};
         moved_.push_back(
             {simulation.joints.group[id], id, motion_of(step, id) - by_gravity, by_gravity, {}});
@@ -142,15 +142,17 @@ JointGain::Frame JointGain::frame_of(const Simulation& simulation, const StepDat
     return frame;
 }
 
-/// From what add() counted.
-void JointGain::turn_back(const Simulation& simulation, StepData& step, BodyId group) const {
+/// From what add() counted, and counts it.
+void JointGain::turn_back(const Simulation& simulation, StepData& step, BodyId group) {
     const auto given = [](const Moved& m) { return m.given; };
     const Frame frame = frame_of(simulation, step, group, given);
-    for_all_in(group, [&](const Moved& m) {
-        const BodyMotion turning = frame.at(step.position[m.body]);
-        step.velocity[m.body] -= turning.velocity;
-        step.angular_velocity[m.body] += -turning.angular_velocity;
-    });
+    for (Moved& moved : moved_) {
+        if (moved.group != group) continue;
+        const BodyMotion turning = frame.at(step.position[moved.body]);
+        step.velocity[moved.body] -= turning.velocity;
+        step.angular_velocity[moved.body] += -turning.angular_velocity;
+        moved.given = moved.given - turning;
+    }
 }
 
 /// Relative to the frame.
@@ -172,7 +174,7 @@ void JointGain::slow_down(const Simulation& simulation, StepData& step, BodyId g
 }
 
 void JointGain::give_momentum_back(const Simulation& simulation, StepData& step,
-                                   std::span<const std::uint32_t> constraints) const {
+                                   std::span<const std::uint32_t> constraints) {
     if (!has_given_) return;
     for (const BodyId group : groups_)
         if (!frame_of_holder(simulation, step, constraints, group))

@@ -11,19 +11,19 @@
 namespace tesserae {
 
 /// Takes back the energy and the angular momentum that joints would add to the bodies that they
-/// connect, in a load.
+/// connect, in a load or an impact.
 ///
-/// What holds does no work. But where light links whip round faster than the step can follow, no
-/// motion holds them in the middle of the next sub-step, and the joints do some. Then the bodies'
-/// motion is scaled down by as much: relative to what is fixed and holds them, so that the joints
-/// keep them; if nothing does, relative to their motion as one rigid body, so that momentum and
-/// angular momentum stay.
+/// What holds does no work. But where light links whip round faster than the step can follow, the
+/// joints do some. Then the bodies' motion is scaled down by as much: relative to what is fixed and
+/// holds them, so that the joints keep them; if nothing does, relative to their motion as one rigid
+/// body, so that momentum and angular momentum stay.
 class JointGain {
   public:
-    /// Starts before a load.
+    /// Starts before a load or an impact.
     /// @param bodies   those of the joints that can move, ascending, with all that joints connect
-    ///                 with them; gravity has acted on them already
-    void begin(const Simulation& simulation, const StepData& step, std::span<const BodyId> bodies);
+    ///                 with them; before a load gravity has acted on them already
+    void begin(const Simulation& simulation, const StepData& step, std::span<const BodyId> bodies,
+               Cause cause);
     /// Counts motion that the joints give a body beside that by their impulses, by moments that
     /// have no counterpart.
     /// @param place   among the bodies
@@ -32,7 +32,7 @@ class JointGain {
     /// bodies: they turn back as one rigid body, which joints allow.
     /// @param constraints   numbers in step.constraints
     void give_momentum_back(const Simulation& simulation, StepData& step,
-                            std::span<const std::uint32_t> constraints) const;
+                            std::span<const std::uint32_t> constraints);
     /// Takes back the energy that the joints have added by their present impulses.
     void give_energy_back(const Simulation& simulation, StepData& step,
                           std::span<const std::uint32_t> constraints) const;
@@ -56,7 +56,7 @@ class JointGain {
     template <class MotionOf>
     Frame frame_of(const Simulation& simulation, const StepData& step, BodyId group,
                    const MotionOf& motion_of) const;
-    void turn_back(const Simulation& simulation, StepData& step, BodyId group) const;
+    void turn_back(const Simulation& simulation, StepData& step, BodyId group);
     void slow_down(const Simulation& simulation, StepData& step, BodyId group, const Frame& frame,
                    double gain) const;
     template <class Visit>

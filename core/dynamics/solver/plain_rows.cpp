@@ -167,7 +167,9 @@ void PlainRows::make_rows() {
 void PlainRows::begin_block() {
     if (block_ || !step_.islands.direct[island_]) return;
     thread_local JointBlock block;
-    if (block.begin(simulation_, step_, step_.islands.constraints_in(island_), cause_))
+    const bool follows_impact = cause_ == Cause::kLoad && step_.was_hit[island_];
+    if (block.begin(simulation_, step_, step_.islands.constraints_in(island_), cause_,
+                    follows_impact))
         block_ = &block;
     // Geometric stiffness takes part in all that the impulses change, from the first on.
     others_.for_all([&](Constraint& c) { c.starts_anew = block_ && block_->has_stiffness(); });
@@ -319,7 +321,7 @@ void PlainRows::leave_part_of_restitution(int, double part) {
 }
 
 void PlainRows::keep(Members) {
-    if (block_ && cause_ == Cause::kLoad) block_->end_load(simulation_, step_);
+    if (block_) block_->end(simulation_, step_);
     others_.keep(cause_);
     for_each_row([&](const ContactRow& row, std::size_t contact) {
         if (cause_ == Cause::kImpact) {
