@@ -118,12 +118,13 @@ ContactTargets PairTargets::at(double separation, double velocity, double rise) 
     return {raised(targets.first, rise, most), raised(targets.second, rise, most)};
 }
 
-/// But for the rise of the aim.
+/// But for the rise of the aim. Bodies that bounce and rest on each other, which rounding puts
+/// apart, are held as any others are.
 ContactTargets PairTargets::of_level(double s, double velocity, double rise) const {
     if (cause_ == Cause::kImpact) return targets_of_impact(approach_, s, h_, -velocity, rise);
     if (bounces_ && approach_.e > 0) {
         const double v1 = -velocity, v0 = v1 - h_ * approach_.g;
-        const bool apart = s > 0 && s > h_ * (v1 + rise);
+        const bool apart = s > kRestingGap * slop_ && s > h_ * (v1 + rise);
         if (s > -approach_.through && (apart || v0 - rise > approach_.slowest))
             return targets_of_driven(approach_, s, h_);
     }
