@@ -77,12 +77,18 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
     effort.enough = settings.tolerance, effort.every = 2;
     return effort;
 }
+/// The number of contacts up to which an impact is solved to a residual of kFewImpactResidual of
+/// its fastest approach: those of two boxes, and the residual at which a box that is hit flat
+/// leaves without turning. More contacts: boxes that settle cost more.
+constexpr std::size_t kFewImpactContacts = 16;
+constexpr double kFewImpactResidual = 1e-8;
 /// Returns the effort of an impact in a small island. The next sub-step does not go on with it, and
 /// a heavy body that hits light ones needs many sweeps.
 /// @param fastest   see Impact
 inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double fastest) {
     const auto sweeps = static_cast<int>(kImpactWork / contacts);
-    return {std::max(simulation.settings.iterations, sweeps), kImpactResidual * fastest, 4};
+    const double residual = contacts > kFewImpactContacts ? kImpactResidual : kFewImpactResidual;
+    return {std::max(simulation.settings.iterations, sweeps), residual * fastest, 4};
 }
 /// Returns the effort of an impact in a large island from which nothing bounces: a fourth of the
 /// iterations where there are many contacts, as the load that follows takes what is left.

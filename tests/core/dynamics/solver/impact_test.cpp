@@ -253,6 +253,32 @@ TEST(Impact, OnARowOfBallsIsANewtonsCradle) {
             }
 }
 
+/// A box that falls flat on a smaller one turned by 1e-4 of its speed over its size after a bounce,
+/// and so came down beside it in the end.
+TEST(Impact, FlatOnASmallerBoxTurnsNothing) {
+    for (const double e : {0.6, 1.0})
+        for (const double rate : {100.0, 240.0, 2000.0}) {
+            Bodies bodies;
+            BodyType below = box_type({0.5, 0.3, 0.4, 0.6});
+            below.fixed_position = below.fixed_rotation = true;
+            BodyType box = box_type({0.8, 0.6, 0.9, 0.8}, 3);
+            box.restitution = e;
+            add(bodies, below, {0, -0.15, 0, 0});
+            add(bodies, box, {0, 1.3, 0, 0});
+            Stepper world(bodies, PhysicsSettings{});
+            const auto seconds = [&](double time) {
+                for (int i = 0; i < time * rate; ++i) world.step(1 / rate);
+            };
+            seconds(0.7);
+            EXPECT_GT(world.bodies().velocity[1][1], 0) << e << " " << rate;
+            EXPECT_LT(norm(world.bodies().angular_velocity[1]), 1e-6) << e << " " << rate;
+            seconds(8);
+            Vec4 moved = world.bodies().position[1];
+            moved[1] = 0;
+            EXPECT_LT(moved.norm(), 1e-5) << e << " " << rate;
+        }
+}
+
 /// Along the line of centres as two points in one dimension do, whatever the masses.
 TEST(Impact, WithoutFrictionThroughTheCentresIsNewtons) {
     std::mt19937_64 random(3);
