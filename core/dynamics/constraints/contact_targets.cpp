@@ -200,9 +200,10 @@ Impact impact_of(const Simulation& simulation, const StepData& step, std::size_t
     if (!meets || !(v0 - rise > approach.slowest)) return {};
     Impact impact;
     impact.fastest = v0;
-    impact.returned =
-        std::max(0.0, targets_of_impact(approach, contact.separation, step.h, v0, rise).second) /
-        v0;
+    if (approach.e == 0) return impact;
+    // Of the points: a rise does not make them slower than they met.
+    const double left = targets_of_impact(approach, contact.separation, step.h, v0, rise).second;
+    impact.returned = std::max(0.0, raised(left, rise, v0)) / v0;
     return impact;
 }
 

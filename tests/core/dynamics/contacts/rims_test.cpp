@@ -181,6 +181,35 @@ void expect_wobblers_gain_nothing(int wobblers) {
 TEST(Rims, WhatWobblesDownGainsNoEnergy) { expect_wobblers_gain_nothing(18); }
 TEST(RimsSlow, WhatWobblesDownGainsNoEnergy) { expect_wobblers_gain_nothing(60); }
 
+/// The part that is thrown back was that by which the points met less their rise: every fourth lost
+/// more than 1e-5 of its energy, and up to 13 %. One in a hundred, which meets with two points in
+/// turn, still does.
+TEST(Rims, ABounceOfRestitutionOneKeepsTheEnergy) {
+    std::mt19937_64 random(11);
+    const auto six = [&](double most) {
+        const Vec4 a = random_vector(random, most), b = random_vector(random, most);
+        return Bivector{a[0], a[1], a[2], b[0], b[1], b[2]};
+    };
+    int off = 0;
+    for (int round = 0; round < 300; ++round) {
+        const double r = uniform(random, 0.05, 0.3), s = uniform(random, 0.05, 0.3);
+        const Shape shapes[] = {spherinder(r, 2 * s), cubinder(r, {2 * s, s}), duocylinder({r, s})};
+        BodyType type = type_of(shapes[round % 3], 0);
+        type.restitution = 1;
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0, 1));
+        add(bodies, type, 0.8 * Vec4::UnitY(), {0, -uniform(random, 0.5, 3), 0, 0}, six(8),
+            exp(six(3)));
+        Stepper world(bodies, without_gravity());
+        run(world, 480);
+        EXPECT_GT(world.bodies().velocity[1][1], 0) << round;
+        const double kept = kinetic_energy(world.bodies()) / kinetic_energy(bodies);
+        EXPECT_LT(kept, 1 + 1e-9) << round;
+        off += kept < 1 - 1e-5;
+    }
+    EXPECT_LE(off, 5);
+}
+
 /// The aim along the normal is what the deepest point of the body, as it turns freely, needs.
 TEST(Rims, RiseByWhatTheirDeepestPointComesNearer) {
     std::mt19937_64 random(5);
