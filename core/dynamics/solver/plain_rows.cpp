@@ -88,7 +88,7 @@ Impact PlainRows::impact(int) const {
 Effort PlainRows::effort_of(int, const Impact& impact) const {
     return step_.awaits[island_] == Awaits::kPatch
                ? effort_of_patch(simulation_, rows().size(), impact.fastest)
-               : effort_of_impact(simulation_, rows().size(), impact.fastest);
+               : effort_of_impact(simulation_, rows().size(), impact.fastest, impact.returned > 0);
 }
 
 /// Calls visit(row, contact) for all rows; contact: its place in the list.

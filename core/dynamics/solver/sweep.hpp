@@ -77,17 +77,20 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
     effort.enough = settings.tolerance, effort.every = 2;
     return effort;
 }
-/// The number of contacts up to which an impact is solved to a residual of kFewImpactResidual of
-/// its fastest approach: those of two boxes, and the residual at which a box that is hit flat
-/// leaves without turning. More contacts: boxes that settle cost more.
-constexpr std::size_t kFewImpactContacts = 16;
+/// The number of contacts up to which an impact from which bodies bounce is solved to a residual of
+/// kFewImpactResidual of its fastest approach: those of two boxes, and the residual at which a box
+/// that is hit flat leaves without turning. More contacts: boxes that settle cost more.
+constexpr std::size_t kFewImpactContacts = 8;
 constexpr double kFewImpactResidual = 1e-8;
 /// Returns the effort of an impact in a small island. The next sub-step does not go on with it, and
 /// a heavy body that hits light ones needs many sweeps.
 /// @param fastest   see Impact
-inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double fastest) {
+/// @param bounces   some body is thrown back
+inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double fastest,
+                               bool bounces) {
     const auto sweeps = static_cast<int>(kImpactWork / contacts);
-    const double residual = contacts > kFewImpactContacts ? kImpactResidual : kFewImpactResidual;
+    const bool is_fine = bounces && contacts <= kFewImpactContacts;
+    const double residual = is_fine ? kFewImpactResidual : kImpactResidual;
     return {std::max(simulation.settings.iterations, sweeps), residual * fastest, 4};
 }
 /// Returns the effort of an impact in a large island from which nothing bounces: a fourth of the
@@ -109,7 +112,7 @@ inline Effort effort_of_bounce(const Simulation& simulation, std::size_t contact
 
 /// Returns the effort of an impact that is solved among the contacts near it, see ImpactPatches.
 inline Effort effort_of_patch(const Simulation& simulation, std::size_t contacts, double fastest) {
-    Effort effort = effort_of_impact(simulation, contacts, fastest);
+    Effort effort = effort_of_impact(simulation, contacts, fastest, false);
     effort.enough = kLargeImpactResidual * fastest;
     return effort;
 }
