@@ -75,6 +75,14 @@ def wall():
             "ms; Bullet, 3D")
 
 
+def heap():
+    heap_of = {"scene": "tumbled_boxes", "bodies": "10000", "state": "settled"}
+    return ("one step of a heap of 10,000 boxes",
+            value("heaps.csv", "ms_per_step", engine="tesserae_default", **heap_of),
+            value("heaps.csv", "ms_per_step", engine="bullet_double", **heap_of),
+            "ms; Bullet, 3D")
+
+
 def still():
     """Returns the row of the still, both at the error of Cycles at 64 samples.
 
@@ -97,7 +105,7 @@ def threads():
 
 def fast():
     """Returns the table of speeds."""
-    sources = {"peers.csv": pile, "wall.csv": wall, "cycles.csv": still,
+    sources = {"peers.csv": pile, "heaps.csv": heap, "wall.csv": wall, "cycles.csv": still,
                "scaling-16-cores/scaling.csv": threads}
     lines = ["| what (times of one thread; less is better) | tesserae, 4D | beside it | unit; what "
              "is beside it | from |", "|---|---|---|---|---|"]

@@ -22,12 +22,13 @@
 #   bash bench/run.sh peers        piles and walls beside Bullet's and ODE's, five minutes
 #   bash bench/run.sh rest         how still stacks, walls and pyramids stand, the same, five minutes
 #   bash bench/run.sh wall         a wall that settles, rests, is hit, beside Bullet's, ten minutes
+#   bash bench/run.sh heaps        heaps that settle and rest, a pyramid that rests, beside Bullet's, 15 minutes
 #   bash bench/run.sh scaling      the stages of a step against bodies and threads, twelve minutes
 #   bash bench/run.sh scaling-million   the same for 10^6 bodies, few steps; not one of all parts
 #   bash bench/run.sh scaling-16-cores  the same for 10^5 bodies, for a machine of many cores; not one of all parts
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-all=(accuracy speed convex leave-out rays extremes light picture bullet peers joints rest wall scaling)
+all=(accuracy speed convex leave-out rays extremes light picture bullet peers joints rest wall heaps scaling)
 on_demand=(gate ablation cycles large scaling-million scaling-16-cores)
 parts=("${all[@]}")
 if [ $# != 0 ]; then
@@ -216,12 +217,21 @@ rest() {
     /usr/bin/python3 -B "$root/bench/report_rest.py" "$raw/head.txt" "$raw/rest.csv" "$results"
 }
 
-wall() {
-    { "$folder/bench/wall" 1000 3 && "$folder/bench/wall" 10000 1; } |
-        awk 'NR == 1 || !/^bodies,/' >"$raw/wall.csv"
-    head_of wall "$1"
-    cat "$raw/head.txt" "$raw/wall.csv" >"$results/wall.csv"
+# over_time PART LOAD_BEFORE "SCENE COUNT REPEATS"...
+over_time() {
+    local part=$1 load_before=$2 run
+    shift 2
+    for run in "$@"; do
+        # shellcheck disable=SC2086
+        "$folder/bench/over_time" $run
+    done | awk 'NR == 1 || !/^scene,/' >"$raw/$part.csv"
+    head_of "$part" "$load_before"
+    cat "$raw/head.txt" "$raw/$part.csv" >"$results/$part.csv"
 }
+
+wall() { over_time wall "$1" "box_wall 1000 3" "box_wall 10000 1"; }
+
+heaps() { over_time heaps "$1" "tumbled_boxes 1000 3" "tumbled_boxes 10000 1" "box_pyramid 5050 1"; }
 
 # scale PART LOAD_BEFORE SCENE,BODIES,SETTLE,STEPS...: 1, 2, 4, ... threads in turn, five times each.
 scale() {
