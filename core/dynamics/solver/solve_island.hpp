@@ -113,9 +113,10 @@ ImpactPlan plan_impacts(const Rows& rows) {
 template <IslandRows Rows>
 void compress(Rows& rows, const ImpactPlan& plan, Members some) {
     const auto sweep = [&](Members swept) { rows.iterate(Pass::kSolve, plan.efforts, swept); };
-    sweep(some - plan.along);
-    if ((some & plan.along).any())
-        solve_pass(rows, true, plan.efforts, some & plan.along, [&](Members gains) {
+    const Members along = some & plan.along;
+    sweep(some - along);
+    if (along.any())
+        solve_pass(rows, true, plan.efforts, along, [&](Members gains) {
             rows.start(Cause::kImpact, gains);
             sweep(gains);
         });
@@ -126,10 +127,10 @@ template <IslandRows Rows>
 void restitute(Rows& rows, const ImpactPlan& plan, Members some) {
     rows.keep_impact_motion(some);
     // If all contacts have the same restitution, this is already the result.
+    const Members along = some & plan.along;
     PerMember<double> parts;
-    for (const int member : some& plan.along)
-        parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
-    if ((some & plan.along).any()) rows.leave_part(parts, some & plan.along);
+    for (const int member : along) parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
+    if (along.any()) rows.leave_part(parts, along);
     rows.iterate(Pass::kRestitution, plan.efforts, some);
     rows.add_changes(some);
     for (const int member : some)
