@@ -9,6 +9,7 @@
 #include "core/dynamics/step/step.hpp"
 #include "core/dynamics/stepper.hpp"
 #include "tests/core/dynamics/builder.hpp"
+#include "tests/core/dynamics/part_of.hpp"
 
 // What is a kilometre away changes no bit: no switch of the whole scene changes a result.
 namespace tesserae {
@@ -89,18 +90,6 @@ std::vector<Kind> kinds() {
          }},
         {"a lone one, of all freedoms", two(with(box_type({0.3, 0.4, 0.5, 0.6}), 0.7))},
     };
-}
-
-/// The bodies between two others.
-Bodies part_of(const Bodies& bodies, std::size_t first, std::size_t count) {
-    Bodies part = bodies;
-    const auto cut = [&](auto& list) {
-        list = {list.begin() + static_cast<std::ptrdiff_t>(first),
-                list.begin() + static_cast<std::ptrdiff_t>(first + count)};
-    };
-    cut(part.type), cut(part.position), cut(part.rotor);
-    cut(part.velocity), cut(part.angular_velocity);
-    return part;
 }
 
 TEST(Strangers, FarAwayChangeNoBit) {

@@ -10,6 +10,7 @@
 
 #include "tests/core/dynamics/builder.hpp"
 #include "tests/core/dynamics/observed_world.hpp"
+#include "tests/core/dynamics/part_of.hpp"
 
 namespace tesserae {
 namespace {
@@ -107,18 +108,6 @@ struct Shared {
             }
     }
 };
-
-/// The bodies of a world from one on.
-Bodies part_of(const Bodies& bodies, std::size_t first, std::size_t count) {
-    Bodies part = bodies;
-    const auto cut = [&](auto& list) {
-        list = {list.begin() + static_cast<std::ptrdiff_t>(first),
-                list.begin() + static_cast<std::ptrdiff_t>(first + count)};
-    };
-    cut(part.type), cut(part.position), cut(part.rotor);
-    cut(part.velocity), cut(part.angular_velocity);
-    return part;
-}
 
 /// Piles far from each other are in one group; a pile by itself is alone in its group.
 TEST(Members, AreSolvedAsEachAlone) {
