@@ -16,6 +16,9 @@ constexpr double kFlushHeight = 1e-11;
 /// A normal with this much of a cell's has more points over that cell (25 degrees), and a piece
 /// that faces it so is one that points of the cell lie over.
 constexpr double kCellPart = 0.9;
+/// The same for a cell whose sides are flat (72 degrees). Along its ridge, a polygon, another
+/// body's cell may lie: one point would be at another place of it each step.
+constexpr double kRidgePart = 0.3;
 /// Cells are larger by this part of the size for clipping, so that a body that lies along a border
 /// does not lose and win points by rounding.
 constexpr double kBorder = 1e-10;
@@ -125,7 +128,11 @@ class PieceContacts {
     /// @param of_b   the piece is b's and the cell a's, or the other way round
     void add_over_cell(const SurfacePiece& piece, bool of_b, const SurfacePiece& cell) {
         const double rise = (of_b ? 1 : -1) * cell.plane.normal.dot(normal_);
-        if (!cell.is_flat || !(rise >= kCellPart)) return;
+        const double least = cell.round_sides.empty() ? kRidgePart : kCellPart;
+        if (!cell.is_flat || !(rise >= least)) return;
+        // Where a cell leans, a border makes points deeper.
+        const double leans = std::min(1.0, rise / kCellPart);
+        border_ = leans * leans * kBorder * size_;
         find_sides_along_normal(cell);
         add_corners(piece, of_b, [&](const Vec4& p) {
             return (cell.plane.normal.dot(p) - cell.plane.offset) / rise;
@@ -141,6 +148,7 @@ class PieceContacts {
     void add_beside(const SurfacePiece& piece, bool of_b, const SurfacePiece& other,
                     const FunctionRef<Level(const Vec4&)>& level) {
         if (piece.is_flat || other.is_flat) return;
+        border_ = kBorder * size_;
         sides_.flat = other.sides, sides_.round = other.round_sides;
         add_corners(piece, of_b, [&](const Vec4& p) {
             const Level there = other.top.radius > 0 ? level_of(other.top, p) : level(p);

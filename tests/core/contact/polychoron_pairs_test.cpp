@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The general pair function: against the exact pairs of boxes, against zonotopes and hulls in long
 // double, and on what rests.
+#include <numbers>
+
 #include "core/contact/convex_views.hpp"
 #include "tests/core/contact/pair_sets.hpp"
 
@@ -152,6 +154,32 @@ TEST(PolychoronPairs, OfFlushCellsHaveAllCorners) {
                 EXPECT_LT((c.normal - n).norm(), 1e-14);
             }
         }
+}
+
+/// A cube's cell lies on a ridge of a larger tesseract, which is a square: they meet in a square,
+/// at whose corners the cell's edges cross the ridge. No corner of either is there.
+TEST(PolychoronPairs, OfACellOnARidgeHaveTheCornersOfWhereTheyMeet) {
+    constexpr double kHalf = 0.2, kDepth = 0.003, kBorder = 1e-9;
+    const Polychoron small = as_hull(Hyperbox{Vec4::Constant(2 * kHalf)});
+    const Polychoron large = as_hull(Hyperbox{Vec4::Constant(1.2)});
+    // In the plane xy, so that the ridge x = y = 0.6 is on top; and how far the cell turns over it.
+    const Rotor up = exp(Bivector{-std::numbers::pi / 8});
+    for (const double turn : {0.0, 0.3}) {
+        const double height = 0.6 * std::sqrt(2.0) + kHalf - kDepth;
+        const auto list = contacts_of(
+            Placed<Polychoron>{small, height * Vec4::UnitY(), exp(Bivector{0, 0, 0, 0, 0, turn})},
+            Placed<Polychoron>{large, Vec4::Zero(), up}, 0.001);
+        ASSERT_EQ(list.size(), 4) << turn;
+        Vec4 sum = Vec4::Zero();
+        for (const Contact& c : list) {
+            EXPECT_NEAR(c.separation, -kDepth, kBorder) << turn;
+            EXPECT_NEAR(c.normal[1], -1, kBorder) << turn;
+            EXPECT_NEAR(c.point[0], 0, kBorder) << turn;
+            EXPECT_NEAR(c.point.tail<2>().norm(), std::sqrt(2.0) * kHalf, kBorder) << turn;
+            sum += c.point;
+        }
+        EXPECT_LT(sum.tail<2>().norm(), kBorder) << turn;
+    }
 }
 
 TEST(PolychoronPairs, OnAPlaneAreTheLowestVertices) {

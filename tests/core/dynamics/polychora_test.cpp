@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -196,6 +197,41 @@ TEST(Polychora, ThatAreFlatLieStill) {
             EXPECT_NEAR(world.bodies().position[1][1], height, 1e-4)
                 << p << ' ' << q << ' ' << ratio;
         }
+}
+
+BodyType duoprism_type(std::int64_t p, std::int64_t q, const Vec2& radii) {
+    Duoprism shape;
+    shape.polygons = {p, q}, shape.radii = radii;
+    complete(shape);
+    BodyType type;
+    type.shape = shape;
+    type.rolling_friction = 0.01;
+    return type;
+}
+
+/// A prism is wedged between the ground and another one, on a ridge of which one of its cells lies.
+TEST(Polychora, RestOnARidgeOfAnother) {
+    const auto turned = [](const Bivector& degrees) { return exp(-0.5 * pi / 180 * degrees); };
+    BodyType body = duoprism_type(5, 8, {0.07, 0.21}), held = duoprism_type(4, 3, {0.285, 0.074});
+    body.mass = 20, body.friction = 0.25, held.friction = 0.5;
+    held.fixed_position = held.fixed_rotation = true;
+    for (const double rate : {60.0, 240.0, 960.0}) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        add(bodies, body, {0.4132, 0.1214, -1.0723, 0.9483}, Vec4::Zero(), {},
+            turned({8.70, -88.99, -83.53, -6.08, 18.75, 13.21}));
+        add(bodies, held, {0.4344, 0.0368, -0.9611, 0.8834}, Vec4::Zero(), {},
+            turned({21.22, -24.42, 11.72, -75.35, -54.91, 53.59}));
+        Stepper world(bodies, PhysicsSettings{});
+        for (int i = 0; i < 2 * rate; ++i) world.step(1 / rate);
+        const Vec4 place = world.bodies().position[1];
+        double moved = 0;
+        for (int i = 0; i < 4 * rate; ++i) {
+            world.step(1 / rate);
+            moved = std::max(moved, (world.bodies().position[1] - place).norm());
+        }
+        EXPECT_LT(moved, 0.01 * world.simulation().type_of(2).slop) << rate;
+    }
 }
 
 /// A body whose principal axes are not its own flies as the same body does whose axes are.
