@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "core/counting_sort.hpp"
@@ -24,6 +25,32 @@ constexpr std::size_t kPairsOfGroup = 64;
 /// The range of masses of an island, as a power of 2, up to which their products with sizes fit in
 /// floats.
 constexpr int kMostExponents = 60;
+
+bool drives(const Simulation& simulation, BodyId id) {
+    return id != kWorld && is_driven(simulation, id);
+}
+
+/// Returns whether a driven body may squeeze an island's bodies, as another one that contacts do
+/// not move touches them too. There may be no velocities that suit both. Every sweep then presses
+/// the bodies together more, and a long step along a direction does so until rounding throws them.
+bool may_be_squeezed(const Simulation& simulation, const StepData& step, std::size_t island) {
+    std::optional<BodyId> holder;
+    bool several = false, driven = false;
+    const auto see = [&](BodyId id) {
+        const bool moves = drives(simulation, id);
+        if (!moves && id != kWorld && simulation.type_of(id).inverse_mass > 0) return;
+        driven = driven || moves;
+        several = several || (holder && *holder != id);
+        holder = id;
+    };
+    for (const std::uint32_t n : step.islands.runs_in(island)) {
+        const ContactList::Run run = step.contacts.nth_run(n);
+        see(run.a), see(run.b);
+    }
+    for (const std::uint32_t n : step.islands.constraints_in(island))
+        see(step.constraints[n].a), see(step.constraints[n].b);
+    return driven && several;
+}
 
 }  // namespace
 
@@ -168,10 +195,14 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     islands.held.assign(count, 0);
     islands.contacts.assign(count, 0);
     islands.conjugates.assign(count, 1);
+    bool any_driven = false;
     for (std::size_t i = 0; i < all; ++i) {
         const auto [a, b] = bodies_of(i);
         const std::uint32_t island = number_[member_[i]];
-        if (!simulation.is_movable(a) || !simulation.is_movable(b)) islands.held[island] = 1;
+        for (const BodyId id : {a, b}) {
+            if (!simulation.is_movable(id)) islands.held[island] = 1;
+            any_driven = any_driven || drives(simulation, id);
+        }
         if (i < runs)
             islands.contacts[island] += static_cast<std::uint32_t>(contacts.nth_run(i).size());
         if (i < runs ? !has_conjugates(simulation, a, b)
@@ -190,6 +221,8 @@ void IslandBuilder::sort_by_island(const Simulation& simulation, StepData& step)
     };
     sort(0, runs, islands.first, islands.runs);
     sort(runs, step.constraints.size(), islands.first_constraint, islands.constraints);
+    for (std::size_t island = 0; any_driven && island < count; ++island)
+        if (may_be_squeezed(simulation, step, island)) islands.conjugates[island] = 0;
     find_direct(simulation, step);
 }
 

@@ -25,9 +25,10 @@ namespace tesserae {
 // left to solve, and slopes would be made of its rounding, so that walls sway.
 
 /// Returns whether a pair of bodies in contact allows conjugate directions; an island has them if
-/// all of its pairs do, and no constraint gives way. Friction must be at most
-/// kMostConjugateFriction, or what a sweep changes may grow. There must be no rolling friction:
-/// bodies that roll have all of it that is allowed, so that no direction leads anywhere.
+/// all of its pairs do, no constraint gives way, and no driven body may squeeze its bodies.
+/// Friction must be at most kMostConjugateFriction, or what a sweep changes may grow. There must be
+/// no rolling friction: bodies that roll have all of it that is allowed, so that no direction leads
+/// anywhere.
 bool has_conjugates(const Simulation& simulation, BodyId a, BodyId b);
 
 /// Returns two energies of an island's bodies: of the changes by the warm start, and of those by

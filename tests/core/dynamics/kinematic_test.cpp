@@ -3,6 +3,9 @@
 // others, and that nothing is done to them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "core/dynamics/diagnostics/energy.hpp"
 #include "core/dynamics/diagnostics/momentum.hpp"
 #include "core/dynamics/stepper.hpp"
@@ -84,6 +87,33 @@ TEST(ClosingWall, PushesAtItsOwnSpeedOrThrowsAtTwiceThat) {
             EXPECT_NEAR(after.position[1][3], speed * 5 / 6, speed * kStep) << restitution;
             EXPECT_EQ(after.velocity[0], v);
         }
+}
+
+/// A press comes down on two boxes in a pit, until there is no room for both. Nothing stops it, so
+/// that overlap grows, but no impulse is the way out.
+TEST(ClosingPress, ThrowsNothing) {
+    constexpr double kSpeed = 0.5, kFall = 3.5;  // of the press; by falling 0.6 m [m/s]
+    std::mt19937_64 engine(3);
+    for (int scene = 0; scene < 4; ++scene) {
+        Bodies bodies;
+        add(bodies, plane_type(Vec4::UnitY(), 0, 0.5));
+        add_walls(bodies, {0, 2, 3}, 0.6, 0.5);
+        const BodyType box = with_surface(box_type(Vec4::Constant(0.5)), 0.5);
+        const auto angle = [&] { return uniform(engine, -1, 1); };
+        for (const double y : {0.3, 0.92})
+            add(bodies, box, y * Vec4::UnitY(), Vec4::Zero(), {},
+                exp(Bivector{angle(), angle(), angle(), angle(), angle(), angle()}));
+        add(bodies, kinematic(box_type({3, 0.4, 3, 3}), 0.5), 1.64 * Vec4::UnitY(),
+            -kSpeed * Vec4::UnitY());
+        Stepper world(bodies, PhysicsSettings{});
+        double fastest = 0, deepest = 0;
+        for (int i = 0; i < 576; ++i) {
+            deepest = std::max(deepest, world.step(kStep).penetration);
+            fastest = std::max(fastest, fastest_of(world));
+        }
+        EXPECT_LT(fastest, kFall + 3 * kSpeed) << scene;
+        EXPECT_GT(deepest, 0.2) << scene;  // it has squeezed them
+    }
 }
 
 TEST(KinematicRotation, IsConstantInTwoPlanesAtOnce) {

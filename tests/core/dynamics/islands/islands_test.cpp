@@ -155,6 +155,27 @@ TEST(Islands, GoAlongConjugateDirectionsEachByItsOwnPairs) {
     EXPECT_EQ(step.islands.conjugates, (std::vector<std::uint8_t>{1, 0, 0}));
 }
 
+/// Where a driven body and another one that contacts do not move may squeeze a body, there may be
+/// no motion that suits both.
+TEST(Islands, GoAlongConjugateDirectionsWhereNothingIsSqueezed) {
+    for (const bool driven : {false, true})
+        for (const bool second : {false, true}) {
+            BodyType held = sphere_type(1);
+            held.fixed_position = held.fixed_rotation = true;
+            Bodies bodies;
+            add(bodies, held, Vec4::Zero(), (driven ? 0.5 : 0.0) * Vec4::UnitX());
+            add(bodies, sphere_type(1)), add(bodies, sphere_type(1));
+            add(bodies, held);
+            std::vector<Contact> contacts(second ? 3 : 2);
+            for (BodyId i = 0; i < contacts.size(); ++i) contacts[i].a = i, contacts[i].b = i + 1;
+            StepData step;
+            step.contacts = ContactList(contacts);
+            IslandBuilder().build(make_simulation(bodies, {}), step);
+            ASSERT_EQ(step.islands.size(), 1u);
+            EXPECT_EQ(step.islands.conjugates[0], !(driven && second)) << driven << second;
+        }
+}
+
 /// Body 0 is fixed, body 1 touches all others, and these touch at random, spheres and boxes, in one
 /// to eight points.
 TEST(Islands, OfManyContactsAreMadeIntoBatchesThatShareNoMovableBody) {
