@@ -216,7 +216,7 @@ Work islands_of(scenes::Scene scene, int settle, std::uint32_t coloured_from) {
             integrate_velocities(simulation, step, {0, simulation.bodies.size()});
             for (std::size_t i = 0; i < step.islands.size(); ++i) {
                 solve_island(simulation, step, i);
-                drop_correction(simulation, step, i);
+                apply_correction(simulation, step, i);
             }
         });
     };

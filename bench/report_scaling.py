@@ -21,7 +21,7 @@ from report_accuracy import save, write_csv
 
 STAGES = ["advance_first_half", "find_pairs", "find_contacts", "build_islands",
           "solve_impacts", "integrate_velocities", "solve_islands", "advance_second_half",
-          "drop_corrections", "finish_step"]
+          "apply_corrections", "finish_step"]
 TIMES = ["step"] + STAGES
 COLORS = dict(zip(STAGES, plt.get_cmap("tab10").colors))
 

@@ -74,9 +74,9 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
     tesserae::solve_coloured_island(simulation, step, island, AllThreads(ranges));
 }
 
-void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
-                              const Ranges& ranges) {
-    tesserae::drop_coloured_correction(simulation, step, island, AllThreads(ranges));
+void apply_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
+                               const Ranges& ranges) {
+    tesserae::apply_coloured_correction(simulation, step, island, AllThreads(ranges));
 }
 
 }  // namespace tesserae::parallel

@@ -21,7 +21,8 @@ class IslandGraph {
     IslandGraph(const IslandGraph&) = delete;
     IslandGraph& operator=(const IslandGraph&) = delete;
 
-    /// Of one island: core's solve_island() or drop_correction(), and their like for coloured ones.
+    /// Of one island: core's solve_island() or apply_correction(), and their like for coloured
+    /// ones.
     using Work = void(const Simulation&, StepData&, std::size_t island);
     using ColouredWork = void(const Simulation&, StepData&, std::size_t island, const Ranges&);
     /// Does the work for all islands of the step; every message is a span of the trace.

@@ -32,8 +32,8 @@ void ThreadedSchedule::solve_islands(const Simulation& simulation, StepData& ste
     island_graph_.run(simulation, step, ranges(), solve_island, solve_coloured_island, trace_);
 }
 
-void ThreadedSchedule::drop_corrections(const Simulation& simulation, StepData& step) {
-    island_graph_.run(simulation, step, ranges(), drop_correction, drop_coloured_correction,
+void ThreadedSchedule::apply_corrections(const Simulation& simulation, StepData& step) {
+    island_graph_.run(simulation, step, ranges(), apply_correction, apply_coloured_correction,
                       trace_);
 }
 

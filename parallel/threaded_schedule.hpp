@@ -25,7 +25,7 @@ class ThreadedSchedule : public Schedule {
     void choose_pairs(const Simulation& simulation, StepData& step) override;
     void solve_impacts(const Simulation& simulation, StepData& step) override;
     void solve_islands(const Simulation& simulation, StepData& step) override;
-    void drop_corrections(const Simulation& simulation, StepData& step) override;
+    void apply_corrections(const Simulation& simulation, StepData& step) override;
     void forget_hints() override { kept_pairs_.forget(); }
 
   private:

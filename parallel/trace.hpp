@@ -9,7 +9,7 @@
 
 namespace tesserae::parallel {
 
-/// The name of a message of islands, within solve_islands or drop_corrections. Its size is
+/// The name of a message of islands, within solve_islands or apply_corrections. Its size is
 /// contacts.
 inline constexpr const char* kIslandsSpan = "islands";
 

@@ -83,7 +83,7 @@ class InTesserae : public PeerEngine {
         times.iterate = of.at(Stage::kSolveIslands) - times.make_rows;
         for (const Stage other :
              {Stage::kAdvanceFirstHalf, Stage::kSolveImpacts, Stage::kIntegrateVelocities,
-              Stage::kAdvanceSecondHalf, Stage::kDropCorrections, Stage::kFinishStep})
+              Stage::kAdvanceSecondHalf, Stage::kApplyCorrections, Stage::kFinishStep})
             times.others += of.at(other);
         return times;
     }

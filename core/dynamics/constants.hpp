@@ -76,11 +76,6 @@ constexpr int kCorrectionSweeps = 2;
 /// so does a body in a narrow wedge. More: a step only costs more.
 constexpr std::size_t kCorrectionWork = 20000, kMostCorrectionSweeps = 32;
 
-/// The most energy that a body may give back after a position correction turned it, as a multiple
-/// of what it was given. A body that would give back more is not turned. Usual 4. More: thin bodies
-/// are thrown.
-constexpr double kGivenBack = 4;
-
 /// The greatest speed at which overlapping bodies are moved apart, in least half-sizes per second;
 /// the speed that gravity adds in a sub-step is added to it. Usual 4. More: bodies that start deep
 /// inside each other explode. Less: a heavy load sinks in.

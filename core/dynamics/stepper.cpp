@@ -79,7 +79,7 @@ StepReport Stepper::whole_step(double dt, Schedule& schedule) {
         solve_islands(schedule);         // what rests: sequential impulses, warm started
         advance_second_half(schedule);   // rotors projected to unit rotors
         stop_fast_bodies(schedule, FastBodies::Half::kSecond);
-        drop_corrections(schedule);  // what only took overlap away is in no velocity
+        apply_corrections(schedule);  // what only took overlap away is in no velocity
     }
     return finish_step(schedule);
 }
@@ -247,9 +247,9 @@ void Stepper::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
     fast_bodies_.stop(simulation_, step_, schedule, half);
 }
 
-void Stepper::drop_corrections(Schedule& schedule) {
-    const Observed stage(*this, Stage::kDropCorrections, step_.islands.size());
-    schedule.drop_corrections(simulation_, step_);
+void Stepper::apply_corrections(Schedule& schedule) {
+    const Observed stage(*this, Stage::kApplyCorrections, step_.islands.size());
+    schedule.apply_corrections(simulation_, step_);
     if (simulation_.needs.damping)
         schedule.for_each_range(simulation_.bodies.size(), kBodyGrain,
                                 [&](Range bodies) { damp_half(simulation_, step_, bodies); });

@@ -80,7 +80,7 @@ class Stepper {
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
     void stop_fast_bodies(Schedule& schedule, FastBodies::Half half);
-    void drop_corrections(Schedule& schedule);
+    void apply_corrections(Schedule& schedule);
     void keep_impulses(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
     void require_finite(Schedule& schedule) const;

@@ -63,17 +63,6 @@ double least_response(const Simulation& simulation, BodyId a, BodyId b) {
     return kNoResponse * (moves > 0 ? moves : greatest_turn(type_a) + greatest_turn(type_b));
 }
 
-bool turns_correction(const Simulation& simulation, const StepData& step, BodyId id,
-                      const Bivector& turning, const Bivector& corrected) {
-    const TypeProperties& type = simulation.type_of(id);
-    if (type.isotropic || step.h * type.arm * norm(corrected) <= type.slop) return false;
-    const auto energy = [&type](const Rotor& rotor, const Bivector& omega) {
-        return dot(omega, angular_momentum(type, rotor, omega));
-    };
-    const Rotor &now = step.rotor[id], then = exp(-0.25 * step.h * turning) * now;
-    return energy(then, corrected) > kGivenBack * energy(now, corrected);
-}
-
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact) {
     ContactRow row;
     row.a = contact.a;

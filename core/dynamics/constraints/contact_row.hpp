@@ -15,14 +15,6 @@ double friction_of(const Simulation& simulation, BodyId a, BodyId b);
 /// when a sphere whose position is fixed is pushed through its centre.
 double least_response(const Simulation& simulation, BodyId a, BodyId b);
 
-/// Returns whether a position correction should not turn a body: as the body turns in the rest of
-/// the sub-step, taking the correction back would give much more energy than it cost, see
-/// kGivenBack. A needle that was rolled a little about its length would be thrown across it.
-/// @param turning     angular velocity with the correction [rad/s]
-/// @param corrected   the correction's part of it [rad/s]
-bool turns_correction(const Simulation& simulation, const StepData& step, BodyId id,
-                      const Bivector& turning, const Bivector& corrected);
-
 /// Returns the row of a contact in the middle of the sub-step, without what start_row() sets.
 ContactRow make_row(const Simulation& simulation, const StepData& step, const Contact& contact);
 

@@ -91,8 +91,7 @@ Parting Parting::at(const StepData& step, Range contacts) const {
 }
 
 Parting parting_of(const StepData& step, std::size_t island) {
-    return {step.corrected[island] != Correction::kNone,
-            step.islands.falling_mass[island] * step.kick};
+    return {step.corrected[island] != 0, step.islands.falling_mass[island] * step.kick};
 }
 
 PairTargets::PairTargets(const Simulation& simulation, const StepData& step, const Contact& contact,

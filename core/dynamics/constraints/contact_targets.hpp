@@ -114,9 +114,9 @@ inline Vec4 velocity_before_gravity(const Simulation& simulation, const StepData
 }
 
 /// Returns whether some contact of the island overlaps by more than the slop while some body is
-/// supported. A position correction then follows the load: bodies move with it, and its velocities
-/// are taken back afterwards. It moves bodies without impulses, which changes the angular momentum
-/// of bodies that move relative to each other; so islands that nothing holds have none.
+/// supported. A position correction then follows the load. It moves bodies without impulses, which
+/// changes the angular momentum of bodies that move relative to each other; so islands that nothing
+/// holds have none.
 bool is_corrected(const Simulation& simulation, const StepData& step, std::size_t island);
 
 /// Returns the energy that gravity gives an island's bodies in a sub-step from rest [J].

@@ -130,7 +130,7 @@ void ImpactPatches::add_island(StepData& step, std::span<const Pair> pairs) {
     step.residual.push_back(0);
     step.has_rows.push_back(0);
     step.was_hit.push_back(0);
-    step.corrected.push_back(Correction::kNone);
+    step.corrected.push_back(0);
     step.awaits.push_back(Awaits::kPatch);
 }
 

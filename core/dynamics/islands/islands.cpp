@@ -65,7 +65,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     step.residual.resize(islands.size());
     step.has_rows.assign(islands.size(), 0);
     step.was_hit.assign(islands.size(), 0);
-    step.corrected.assign(islands.size(), Correction::kNone);
+    step.corrected.assign(islands.size(), 0);
     islands.coloured.assign(islands.size(), Islands::kNotColoured);
     islands.first_row.assign(islands.size(), 0);
     colouring_.begin(simulation, step);

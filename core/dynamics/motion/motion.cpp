@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/dynamics/constants.hpp"
 #include "core/dynamics/motion/free_path.hpp"
 #include "core/dynamics/motion/free_rotation.hpp"
 
@@ -71,6 +72,19 @@ bool advance_second_half(const Simulation& simulation, StepData& step, Range bod
             any_fast = is_fast(simulation, step, static_cast<BodyId>(i)) || any_fast;
     });
     return any_fast;
+}
+
+void displace(const Simulation& simulation, StepData& step, BodyId id, const BodyMotion& motion) {
+    const TypeProperties& type = simulation.type_of(id);
+    const double most = kDeepest / kSlop * type.slop;
+    const double speed = motion.velocity.norm() + type.arm * norm(motion.angular_velocity);
+    double time = 0.5 * step.h;
+    if (time * speed > most) time = most / speed;
+    step.position[id] += time * motion.velocity;
+    if (motion.angular_velocity == Bivector{}) return;
+    const Rotor turn = exp(-0.5 * time * motion.angular_velocity);
+    step.rotor[id] = projected_to_spin4(turn * step.rotor[id]);
+    if (!type.isotropic) step.angular_velocity[id] = rotate(turn, step.angular_velocity[id]);
 }
 
 void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id) {

@@ -16,6 +16,11 @@ bool advance_first_half(const Simulation& simulation, StepData& step, Range bodi
 /// @return whether any body is fast, see is_fast()
 bool advance_second_half(const Simulation& simulation, StepData& step, Range bodies);
 
+/// Moves a body for half a sub-step by a motion that it does not keep, as of a position correction,
+/// but not so far that it might pass through another body, see is_fast(). Its velocity stays, and
+/// its angular velocity turns with it, so that it keeps its energy.
+void displace(const Simulation& simulation, StepData& step, BodyId id, const BodyMotion& motion);
+
 /// Writes step.inverse_inertia of a body for its present rotor. An isotropic body has none.
 void set_inverse_inertia(const Simulation& simulation, StepData& step, BodyId id);
 

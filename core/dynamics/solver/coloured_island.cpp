@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/dynamics/constraints/contact_row.hpp"
+#include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/solver/coloured_rows.hpp"
 #include "core/dynamics/solver/kernels/sixteen.hpp"
 
@@ -127,29 +128,28 @@ void begin_correction(const ColouredStage& stage, Range bodies) {
 
 void end_correction(const ColouredStage& stage, Range bodies) {
     ColouredIslands& coloured = stage.step.coloured;
-    if (!coloured.turns_unevenly) return;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = coloured.bodies[i];
         BodyChange& change = coloured.changes[i];
-        const PackedChange& before = coloured.last_changes[i];
-        const Bivector corrected = angular_change(change) - angular_change(before);
-        const Bivector turning = stage.step.angular_velocity[id] + angular_change(change);
-        if (!turns_correction(stage.simulation, stage.step, id, turning, corrected)) continue;
-        change.first_planes = before.first_planes;
+        PackedChange& before = coloured.last_changes[i];
+        PackedChange corrected;
+        for (std::size_t k = 0; k < 4; ++k) {
+            corrected.velocity[k] = change.velocity[k] - before.velocity[k];
+            corrected.first_planes[k] = change.first_planes[k] - before.first_planes[k];
+        }
+        for (std::size_t k = 0; k < 2; ++k) corrected.rest[k] = change.rest[k] - before.rest[k];
+        change.velocity = before.velocity, change.first_planes = before.first_planes;
         change.rest[0] = before.rest[0], change.rest[1] = before.rest[1];
+        before = corrected;
     }
 }
 
-void take_correction_back(const ColouredStage& stage, Range bodies) {
-    StepData& step = stage.step;
+void apply_correction(const ColouredStage& stage, Range bodies) {
+    const ColouredIslands& coloured = stage.step.coloured;
     for (std::size_t i = bodies.begin; i < bodies.end; ++i) {
-        const BodyId id = step.coloured.bodies[i];
-        const BodyChange& corrected = step.coloured.changes[i];
-        const PackedChange& before = step.coloured.last_changes[i];
-        step.velocity[id] -= velocity_change(corrected) - velocity_change(before);
-        if (stage.simulation.needs.turning)
-            step.angular_velocity[id] =
-                step.angular_velocity[id] - (angular_change(corrected) - angular_change(before));
+        const PackedChange& corrected = coloured.last_changes[i];
+        BodyMotion motion{velocity_change(corrected), {}};
+        if (stage.simulation.needs.turning) motion.angular_velocity = angular_change(corrected);
+        displace(stage.simulation, stage.step, coloured.bodies[i], motion);
     }
 }
 

@@ -72,11 +72,11 @@ void leave_part_of_changes(const ColouredStage& stage, Range bodies, float part)
 
 /// Keeps the bodies' changes by the load, before the sweeps of a position correction.
 void begin_correction(const ColouredStage& stage, Range bodies);
-/// Ends the sweeps of a position correction: bodies for which turns_correction() is true are not
-/// turned by it.
+/// Ends the sweeps of a position correction: takes what they have changed out of the bodies'
+/// changes.
 void end_correction(const ColouredStage& stage, Range bodies);
-/// Takes back the velocities of the position correction, once the bodies have moved.
-void take_correction_back(const ColouredStage& stage, Range bodies);
+/// Moves the bodies by it, see displace().
+void apply_correction(const ColouredStage& stage, Range bodies);
 
 /// A group of coloured islands and its colours.
 class ColouredGroup {

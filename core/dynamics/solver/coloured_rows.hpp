@@ -56,7 +56,7 @@ class ColouredRows {
     void keep(Members some);
     void begin_correction(Members some);
     void end_correction(Members some);
-    void take_correction_back(Members some);
+    void apply_correction(Members some);
 
   private:
     using AlongDirections = ConjugateDirections<Threads>;
@@ -392,8 +392,8 @@ void ColouredRows<Threads>::end_correction(Members some) {
 }
 
 template <class Threads>
-void ColouredRows<Threads>::take_correction_back(Members some) {
-    for_bodies(some, [&](Range bodies) { tesserae::take_correction_back(stage(), bodies); });
+void ColouredRows<Threads>::apply_correction(Members some) {
+    for_bodies(some, [&](Range bodies) { tesserae::apply_correction(stage(), bodies); });
 }
 
 // The functions of solver.hpp for the group of coloured islands that an island leads. They do
@@ -416,11 +416,11 @@ void solve_coloured_island(const Simulation& simulation, StepData& step, std::si
 }
 
 template <class Threads>
-void drop_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
-                              const Threads& threads) {
+void apply_coloured_correction(const Simulation& simulation, StepData& step, std::size_t island,
+                               const Threads& threads) {
     if (!step.coloured.leads(step.islands.coloured[island])) return;
     ColouredRows rows(simulation, step, island, threads);
-    drop_correction(rows);
+    apply_correction(rows);
 }
 
 }  // namespace tesserae

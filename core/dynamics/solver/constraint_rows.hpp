@@ -140,12 +140,6 @@ class ConstraintRows {
             step_.part_sums[c.part].moment += wrench.moment;
         });
     }
-    /// Applies what leads from the present impulses to those of the load.
-    void take_correction_back() const {
-        for_all([&](Constraint& c) {
-            apply(c, impulses_of(c, step_.joint_impulses[c.part]) - c.impulse);
-        });
-    }
     /// Makes the changes so far a part of what at() leaves out.
     void take_warm_start() const {
         for_all([&](Constraint& c) { c.aim -= velocities(c); });

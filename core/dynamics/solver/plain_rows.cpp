@@ -7,6 +7,7 @@
 
 #include "core/dynamics/constraints/contact_row.hpp"
 #include "core/dynamics/constraints/rolling_row.hpp"
+#include "core/dynamics/motion/motion.hpp"
 #include "core/dynamics/solver/solve_island.hpp"
 
 namespace tesserae {
@@ -130,11 +131,6 @@ void PlainRows::restore_motions() {
         step_.velocity[bodies_[i]] = motions_[i].velocity;
         step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
     }
-}
-
-void PlainRows::restore_turning() {
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
 }
 
 void PlainRows::make_rows() {
@@ -336,49 +332,19 @@ void PlainRows::keep(Members) {
 
 void PlainRows::begin_correction(Members) { keep_motions(); }
 
-/// Nothing is turned where turns_correction() says so of any body.
 void PlainRows::end_correction(Members) {
-    bool turns = false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const Bivector& turning = step_.angular_velocity[bodies_[i]];
-        turns |= turns_correction(simulation_, step_, bodies_[i], turning,
-                                  turning - motions_[i].angular_velocity);
+        const BodyMotion corrected = motion_of(step_, bodies_[i]) - motions_[i];
+        step_.velocity[bodies_[i]] = motions_[i].velocity;
+        step_.angular_velocity[bodies_[i]] = motions_[i].angular_velocity;
+        motions_[i] = corrected;
     }
-    if (turns) {
-        restore_turning();
-        step_.corrected[island_] = Correction::kStraight;
-    }
-    // A block with geometric stiffness changes more than its impulses say.
-    if (!block_ || !block_->has_stiffness()) return;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        motions_[i] = motion_of(step_, bodies_[i]) - motions_[i];
-    step_.corrected[island_] = Correction::kMotion;
 }
 
-void PlainRows::take_motion_back() {
+void PlainRows::apply_correction(Members) {
     list_bodies();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        step_.velocity[bodies_[i]] -= motions_[i].velocity;
-        step_.angular_velocity[bodies_[i]] += -motions_[i].angular_velocity;
-    }
-}
-
-/// From the rows' impulses to those of the load.
-void PlainRows::take_correction_back(Members) {
-    if (step_.corrected[island_] == Correction::kMotion) return take_motion_back();
-    const bool straight = step_.corrected[island_] == Correction::kStraight;
-    if (straight) keep_motions();
-    others_.take_correction_back();
-    for_each_row([&](const ContactRow& row, std::size_t contact) {
-        const ContactImpulse& load = step_.impulses[contact];
-        apply_impulse(row, (load.normal - row.normal_impulse) * row.normal +
-                               (load.tangent() - row.tangent_impulse));
-        if (simulation_.needs.rolling)
-            apply_angular_impulse(
-                simulation_, step_, row.a, row.b,
-                step_.angular_impulses[contact] - angular_impulse_of(row, rolling_row_of(row)));
-    });
-    if (straight) restore_turning();
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
+        displace(simulation_, step_, bodies_[i], motions_[i]);
 }
 
 }  // namespace tesserae

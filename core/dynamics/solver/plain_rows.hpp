@@ -45,7 +45,7 @@ class PlainRows {
     void keep(Members);
     void begin_correction(Members);
     void end_correction(Members);
-    void take_correction_back(Members);
+    void apply_correction(Members);
 
   private:
     std::span<ContactRow> rows() const {
@@ -62,8 +62,6 @@ class PlainRows {
     double sweep_others(Sweep sweep);
     void keep_motions();
     void restore_motions();
-    void restore_turning();
-    void take_motion_back();
     void swap_motions();
     void make_rows();
     void apply_impulse(const ContactRow& row, const Vec4& impulse);

@@ -50,11 +50,11 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     rows.leave_part_of_restitution(member, part);
     // Writes step.impulses of the contacts, or step.hit after an impact.
     rows.keep(some);
-    // Are called before and after the sweeps of a position correction, and once the bodies
-    // have moved by it.
+    // Are called before and after the sweeps of a position correction, and to move the bodies by
+    // it once they have moved by their velocities.
     rows.begin_correction(some);
     rows.end_correction(some);
-    rows.take_correction_back(some);
+    rows.apply_correction(some);
 };
 
 /// Rows that may go along conjugate directions. They have along_directions(), which is the same
@@ -213,15 +213,14 @@ PerMember<double> sweep_loads(Rows& rows) {
 /// follows.
 inline void begin_load(const Simulation& simulation, StepData& step, std::size_t island) {
     hold_still(simulation, step, island);
-    if (is_corrected(simulation, step, island)) step.corrected[island] = Correction::kAll;
+    if (is_corrected(simulation, step, island)) step.corrected[island] = 1;
 }
 
 /// Returns the islands that have a position correction.
 template <IslandRows Rows>
 Members corrected(const Rows& rows) {
-    return rows.members().where([&](int member) {
-        return rows.step().corrected[rows.island(member)] != Correction::kNone;
-    });
+    return rows.members().where(
+        [&](int member) { return rows.step().corrected[rows.island(member)] != 0; });
 }
 
 /// Solves the loads of islands, and their position corrections, by any kind of rows: see
@@ -248,11 +247,11 @@ void solve_load(Rows& rows) {
     rows.add_changes(all);
 }
 
-/// Drops the position corrections of islands, see drop_correction() in solver.hpp.
+/// Moves bodies by the position corrections of islands, see apply_correction() in solver.hpp.
 template <IslandRows Rows>
-void drop_correction(Rows& rows) {
+void apply_correction(Rows& rows) {
     const Members corrects = corrected(rows);
-    if (corrects.any()) rows.take_correction_back(corrects);
+    if (corrects.any()) rows.apply_correction(corrects);
 }
 
 }  // namespace tesserae

@@ -20,11 +20,11 @@ void solve_island(const Simulation& simulation, StepData& step, std::size_t isla
     solve_load(rows);
 }
 
-void drop_correction(const Simulation& simulation, StepData& step, std::size_t island) {
+void apply_correction(const Simulation& simulation, StepData& step, std::size_t island) {
     if (step.islands.is_coloured(island))
-        return drop_coloured_correction(simulation, step, island, OneThread{});
+        return apply_coloured_correction(simulation, step, island, OneThread{});
     PlainRows rows(simulation, step, island);
-    drop_correction(rows);
+    apply_correction(rows);
 }
 
 }  // namespace tesserae

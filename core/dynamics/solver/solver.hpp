@@ -21,8 +21,9 @@ void solve_impact(const Simulation& simulation, StepData& step, std::size_t isla
 /// here friction is a block of three directions instead of separate ones.
 void solve_island(const Simulation& simulation, StepData& step, std::size_t island);
 
-/// Takes the velocities of the island's position correction back, once its bodies have moved by
-/// them (split impulses: Guendelman et al., "Nonconvex rigid bodies with stacking", 2003).
-void drop_correction(const Simulation& simulation, StepData& step, std::size_t island);
+/// Moves the island's bodies by its position correction, once they have moved by their velocities,
+/// of which it is no part (split impulses: Guendelman et al., "Nonconvex rigid bodies with
+/// stacking", 2003).
+void apply_correction(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

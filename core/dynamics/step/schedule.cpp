@@ -12,7 +12,7 @@ const char* name_of(Stage stage) {
     constexpr const char* kNames[] = {
         "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
         "solve_impacts",      "integrate_velocities", "solve_islands", "advance_second_half",
-        "drop_corrections",   "stop_fast_bodies",     "finish_step"};
+        "apply_corrections",  "stop_fast_bodies",     "finish_step"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 
@@ -52,10 +52,10 @@ void Schedule::solve_islands(const Simulation& simulation, StepData& step) {
     }
 }
 
-void Schedule::drop_corrections(const Simulation& simulation, StepData& step) {
+void Schedule::apply_corrections(const Simulation& simulation, StepData& step) {
     for (std::size_t island = 0; island < step.islands.size(); ++island) {
         if (island > 0) look_for_stop();
-        drop_correction(simulation, step, island);
+        apply_correction(simulation, step, island);
     }
 }
 

@@ -18,7 +18,7 @@ enum class Stage {
     kIntegrateVelocities,
     kSolveIslands,
     kAdvanceSecondHalf,
-    kDropCorrections,
+    kApplyCorrections,
     kStopFastBodies,
     kFinishStep,
 };
@@ -65,10 +65,10 @@ class Schedule {
     virtual void choose_pairs(const Simulation& simulation, StepData& step);
 
     /// Calls solve_impact() for every island; the next two call solve_island() and
-    /// drop_correction().
+    /// apply_correction().
     virtual void solve_impacts(const Simulation& simulation, StepData& step);
     virtual void solve_islands(const Simulation& simulation, StepData& step);
-    virtual void drop_corrections(const Simulation& simulation, StepData& step);
+    virtual void apply_corrections(const Simulation& simulation, StepData& step);
 
     /// Drops what is kept to make the next step faster. It changes no result.
     virtual void forget_hints() {}

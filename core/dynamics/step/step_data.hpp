@@ -139,10 +139,6 @@ struct BodyMotion {
     }
 };
 
-/// The position correction that follows an island's load: kStraight turns no body, kMotion is taken
-/// back by the bodies' motion instead of by impulses.
-enum class Correction : std::uint8_t { kNone, kAll, kStraight, kMotion };
-
 /// What solve_impact() has to solve of an island: kPatch means that the island is a patch of a
 /// large one, see ImpactPatches.
 enum class Awaits : std::uint8_t { kNothing, kImpact, kPatch };
@@ -209,7 +205,7 @@ struct StepData {
     /// StepMemory.
     std::vector<Bivector> angular_impulses, warm_start_angular;
     std::vector<KeptManifolds> kept, last_kept;  ///< those of this sub-step and of the last one
-    std::vector<Correction> corrected;           ///< of every island: see is_corrected()
+    std::vector<std::uint8_t> corrected;         ///< of every island: see is_corrected()
     std::vector<double> residual;                ///< of every island [m/s]
     std::vector<BodyId> asleep;                  ///< as in StepMemory, but now
     std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts

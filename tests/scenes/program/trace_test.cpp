@@ -18,7 +18,7 @@ constexpr int kSteps = 12, kSubsteps = 2;
 const std::set<std::string> kStagesOfSubstep = {
     "advance_first_half", "find_pairs",          "find_contacts",
     "build_islands",      "solve_impacts",       "integrate_velocities",
-    "solve_islands",      "advance_second_half", "drop_corrections"};
+    "solve_islands",      "advance_second_half", "apply_corrections"};
 
 std::vector<std::string> arguments(const Folder& folder, const std::string& trace) {
     return {"simulate",
@@ -56,7 +56,7 @@ TEST(ProgramTrace, HasASpanForEveryStageAndMessagesOfIslandsWithinTheirs) {
         const double begin = event["ts"], duration = event["dur"];
         EXPECT_GE(begin, 0);
         EXPECT_GE(duration, 0);
-        if (name == "solve_impacts" || name == "solve_islands" || name == "drop_corrections")
+        if (name == "solve_impacts" || name == "solve_islands" || name == "apply_corrections")
             solving.push_back({begin, begin + duration});
         if (name == parallel::kIslandsSpan) messages.push_back({begin, begin + duration});
     }

@@ -205,13 +205,9 @@ TEST(ColouredRows, SolvesAPairAsTheOneByOneSolverDoes) {
             // the coloured one solves a pair's normal impulses first (measured: 0.45 m/s).
             const bool jams = !single && friction > kMostConjugateFriction;
             const double several = jams ? 0.6 : 0.1;
-            // A push of four sweeps has not ended; while bodies move with it they turn on
-            // otherwise, by half a step times the square of a push of 0.5 rad/s (measured: 2.5e-4).
-            const bool pushed = !single && plain.corrected[0] != Correction::kNone;
-            const double most = !hit            ? (carried  ? 1e-2
-                                                   : pushed ? 5e-4
-                                                   : jams   ? 4e-5
-                                                            : 3e-5)
+            const double most = !hit            ? (carried ? 1e-2
+                                                   : jams  ? 4e-5
+                                                           : 3e-5)
                                 : friction == 0 ? (single ? 1e-5 : 6e-3)
                                                 : (single ? 1e-4 : several);
             if (!hit) {

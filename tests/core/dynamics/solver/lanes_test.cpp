@@ -43,7 +43,7 @@ Unsolved solved_with(Unsolved world, LaneCount lanes) {
     solve_coloured_impact(simulation, world.step, 0, OneThread{}, lanes);
     solve_coloured_island(simulation, world.step, 0, OneThread{}, lanes);
     advance_second_half(simulation, world.step, {0, simulation.bodies.size()});
-    drop_coloured_correction(simulation, world.step, 0, OneThread{});
+    apply_coloured_correction(simulation, world.step, 0, OneThread{});
     return world;
 }
 
