@@ -70,11 +70,16 @@ constexpr double kPartedWeight = 2;
 /// More: a step costs more while anything overlaps.
 constexpr int kCorrectionSweeps = 2;
 
-/// The most sweeps of a position correction in an island of few contacts: kCorrectionWork divided
-/// by the number of contacts, but at most kMostCorrectionSweeps sweeps. Usual 20000 and 32. Fewer:
-/// a body under a heavy one is pushed from one overlap into the next and sinks in ever deeper, and
-/// so does a body in a narrow wedge. More: a step only costs more.
-constexpr std::size_t kCorrectionWork = 20000, kMostCorrectionSweeps = 32;
+/// The sweeps of a position correction in an island of few contacts: kCorrectionWork divided by the
+/// number of contacts, but at most kMostSweeps. Usual 20000. Fewer: a body under a heavy one is
+/// pushed from one overlap into the next and sinks in ever deeper, and so does a body in a narrow
+/// wedge. More: a step only costs more.
+constexpr std::size_t kCorrectionWork = 20000;
+
+/// The most sweeps that an island of few contacts may take beyond `iterations`, in an impact, a
+/// load or a position correction. Usual 100. Fewer: a heavy body on light ones sinks in or is
+/// thrown back. More: boxes that settle cost more.
+constexpr std::size_t kMostSweeps = 100;
 
 /// The greatest speed at which overlapping bodies are moved apart, in least half-sizes per second;
 /// the speed that gravity adds in a sub-step is added to it. Usual 4. More: bodies that start deep
@@ -91,9 +96,10 @@ constexpr double kRestitutionKicks = 4;
 /// Usual 1e-4. More: a box that is hit flat leaves turning.
 constexpr double kImpactResidual = 1e-4;
 
-/// The most sweeps of an impact, times the contacts of the island; `iterations` if that is more.
-/// Usual 10000. Less: a body that hits much lighter ones before a wall is thrown back. More: boxes
-/// that settle cost several times as much.
+/// The sweeps of an impact in an island of few contacts: kImpactWork divided by the number of
+/// contacts, but at most kMostSweeps; `iterations` if that is more. Usual 10000. Less: a body that
+/// hits much lighter ones before a wall is thrown back. More: boxes that settle cost several times
+/// as much.
 constexpr std::size_t kImpactWork = 10000;
 
 /// The number of contacts from which an island solves an impact only among the contacts near it.
@@ -113,15 +119,15 @@ constexpr std::size_t kPatchCost = 64;
 /// step.
 constexpr double kLargeImpactResidual = 1e-3;
 
-/// The most sweeps of the compression of a large island from which bodies bounce, while they go
-/// along conjugate directions. Usual 40. Fewer: a heavy plate that falls on a bed of balls is not
-/// stopped and returns too slowly.
-constexpr int kBounceSweeps = 40;
+/// The most sweeps of an impact while they go along conjugate directions, if that is more than
+/// kImpactWork allows. Usual 40. Fewer: a heavy plate that falls on a bed of balls is not stopped
+/// and returns too slowly.
+constexpr int kFurtherImpactSweeps = 40;
 
-/// The most sweeps over a load of few contacts: kLoadWork divided by the number of contacts, but at
-/// most kMostLoadSweeps; `iterations` if that is more. Usual 60000 and 80. Fewer: towers that start
-/// with gaps fall, and high walls with ragged ends lean. More: heaps cost more while they settle.
-constexpr std::size_t kLoadWork = 60000, kMostLoadSweeps = 80;
+/// The sweeps over a load of few contacts: kLoadWork divided by the number of contacts, but at most
+/// kMostSweeps; `iterations` if that is more. Usual 60000. Fewer: towers that start with gaps fall,
+/// and high walls with ragged ends lean. More: heaps cost more while they settle.
+constexpr std::size_t kLoadWork = 60000;
 
 /// The most sweeps over a load that nothing has hit in the sub-step, as a multiple of `iterations`,
 /// while they go along conjugate directions. Usual 3. Less: high walls that start with gaps sway

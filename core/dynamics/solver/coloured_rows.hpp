@@ -36,13 +36,14 @@ class ColouredRows {
 
     Impact impact(int member) const;
     Effort effort_of(int member, const Impact& impact) const;
-    bool along_directions() const { return step().islands.conjugates[island(0)]; }
+    static constexpr bool kDropsGains = true;
+    bool along_directions(Cause) const { return step().islands.conjugates[island(0)]; }
     void start(Cause cause, Members some);
     void leave_friction_out(Members some) { group_.leave_friction_out(some); }
     PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
-    PerMember<double> iterate_along_directions(const PerMember<Effort>& efforts, Members some,
-                                               const Instead& instead);
+    PerMember<double> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
+                                               Members some, const Instead& instead);
     double energy(int member) const;
     LoadWork load(int member) const { return {work()[member], energy(member)}; }
     void leave_part(const PerMember<double>& parts, Members some) {
@@ -57,17 +58,12 @@ class ColouredRows {
     void begin_correction(Members some);
     void end_correction(Members some);
     void apply_correction(Members some);
+    /// Does one sweep. Returns the residuals if they are measured.
+    template <class Directions = NoDirections>
+    PerMember<double> sweep(Sweep sweep, Members some, const Directions& directions = {});
+    double rounding_of_loads(int member) const;
 
   private:
-    using AlongDirections = ConjugateDirections<Threads>;
-    /// The islands that go on along directions, and what is known of each.
-    struct Going {
-        Members islands;
-        PerMember<double> residual, smallest;
-        Members weighed;             ///< islands whose rounding_of_loads() is known
-        PerMember<double> rounding;  ///< [m/s]
-    };
-
     const ColouredStage& stage() const { return group_.stage(); }
     std::span<const BodyId> bodies_in(Range some) const {
         return {&step().coloured.bodies[some.begin], some.end - some.begin};
@@ -85,13 +81,8 @@ class ColouredRows {
                                visit(others_of(stage(), batches.others));
                            });
     }
-    template <class Directions = NoDirections>
-    PerMember<double> sweep(Sweep sweep, Members some, const Directions& directions = {});
     PerMember<double> residuals(double largest) const;
-    Members ends_of(const Turn& turn, const PerMember<Effort>& efforts, AlongDirections& directions,
-                    Going& going) const;
     PerMember<double> work() const;
-    double rounding_of_loads(int member) const;
 
     ColouredGroup group_;
     const Threads& threads_;
@@ -112,10 +103,9 @@ Impact ColouredRows<Threads>::impact(int member) const {
 
 template <class Threads>
 Effort ColouredRows<Threads>::effort_of(int member, const Impact& impact) const {
-    const std::uint32_t contacts = step().islands.size_of(island(member));
-    return impact.returned > 0 && along_directions()
-               ? effort_of_bounce(simulation(), contacts, impact.fastest)
-               : effort_of_large_impact(simulation(), contacts, impact.fastest);
+    return effort_of_impact(simulation(), step().islands.size_of(island(member)),
+                            kLargeImpactResidual * impact.fastest,
+                            along_directions(Cause::kImpact));
 }
 
 /// Makes the rows of all contacts, unless an impact has made them before, and applies the impulses
@@ -212,78 +202,24 @@ PerMember<double> ColouredRows<Threads>::iterate(Pass pass, const PerMember<Effo
                              [&](Sweep one, Members swept) { return sweep(one, swept); });
 }
 
-/// Sweeps along conjugate directions until neither a row's velocity, nor a body's by the next step
-/// along the direction, changes by more than the tolerance, or than the rounding of the loads. The
-/// second condition is for motions of a whole wall, which no row sees.
-/// @param instead   is called for islands whose directions end with a gain of energy
+/// Restitution has no directions: it takes more sweeps instead.
 template <class Threads>
 template <class Instead>
-PerMember<double> ColouredRows<Threads>::iterate_along_directions(const PerMember<Effort>& efforts,
+PerMember<double> ColouredRows<Threads>::iterate_along_directions(Pass pass,
+                                                                  const PerMember<Effort>& efforts,
                                                                   Members some,
                                                                   const Instead& instead) {
-    AlongDirections directions(group_, threads_);
-    Going going = {some, {}, {}, {}, {}};
-    going.smallest.fill(std::numeric_limits<double>::infinity());
-    Members gains;
-    for (int number = 0; going.islands.any(); ++number) {
-        const Turn turn(Pass::kSolve, efforts, going.islands, number);
-        if (!turn.swept().any()) continue;
-        Sweep one = turn.sweep();
-        one.adjoint = one.backward;
-        if (one.backward) {
-            directions.go_on(turn.swept() & directions.begun());
-            directions.begin(turn.swept() - directions.begun());
+    if (pass == Pass::kRestitution) {
+        PerMember<Effort> longer = efforts;
+        for (const int member : some) {
+            const std::size_t contacts = step().islands.size_of(island(member));
+            longer[member].sweeps =
+                std::max(efforts[member].sweeps, static_cast<int>(kImpactWork / contacts));
         }
-        const PerMember<double> left = directions.begun().any()
-                                           ? sweep(one, turn.swept(), directions)
-                                           : sweep(one, turn.swept());
-        for (const int member : turn.swept())
-            going.residual[member] = turn.measured().has(member) ? left[member] : 0;
-        const Members ends = ends_of(turn, efforts, directions, going);
-        gains = gains | (ends & directions.begun()).where([&](int member) {
-            return going.residual[member] > efforts[member].enough && directions.is_gain(member);
-        });
-        going.islands = going.islands - ends;
+        return iterate(pass, longer, some);
     }
-    if (gains.any()) {
-        directions.take_back(gains);
-        instead(gains);
-    }
-    return going.residual;
-}
-
-/// Returns the islands that end with this turn along directions.
-template <class Threads>
-Members ColouredRows<Threads>::ends_of(const Turn& turn, const PerMember<Effort>& efforts,
-                                       AlongDirections& directions, Going& going) const {
-    Members ends = turn.measured().where([&](int member) {
-        return efforts[member].leads_away(going.residual[member], going.smallest[member]);
-    });
-    const auto most = [&](int member) {
-        return std::max(efforts[member].sweeps, efforts[member].further);
-    };
-    if (!turn.sweep().backward) {
-        const Members goes = ((turn.swept() - ends) & directions.begun()).where([&](int member) {
-            return turn.done(member) != most(member);
-        });
-        const PerMember<double> moves = directions.find(goes);
-        ends = ends | goes.where([&](int member) {
-            const double left = std::max(going.residual[member], moves[member]);
-            const int done = turn.done(member);
-            if (efforts[member].is_done(done, left)) return true;
-            if (efforts[member].enough < 0 || done < efforts[member].least) return false;
-            if (!going.weighed.has(member)) {
-                going.weighed = going.weighed | Members::only(member);
-                going.rounding[member] = rounding_of_loads(member);
-            }
-            return left <= going.rounding[member];
-        });
-    }
-    return ends | turn.swept().where([&](int member) {
-        const int done = turn.done(member);
-        return done >= efforts[member].sweeps &&
-               (done >= efforts[member].further || !directions.holds(member));
-    });
+    ConjugateDirections<Threads> directions(group_, threads_);
+    return AlongDirections(*this, directions, pass, efforts).solve(some, instead);
 }
 
 /// Returns the residual that float's rounding of an island's loads leaves: no sweep brings it down

@@ -10,88 +10,9 @@
 #include "core/dynamics/constants.hpp"
 #include "core/dynamics/solver/coloured_island.hpp"
 #include "core/dynamics/solver/conjugate.hpp"
+#include "core/dynamics/solver/island_directions.hpp"
 
 namespace tesserae {
-
-/// The directions of one island's load or impact, see conjugate.hpp.
-class IslandDirections {
-  public:
-    /// The rows' part of r.z, r.p and the energy.
-    struct RowSums {
-        double of_step = 0, of_all = 0;
-    };
-
-    IslandDirections() = default;
-    /// @param warm_start   energy of the warm start, see weigh_warm_start()
-    explicit IslandDirections(double warm_start)
-        : warm_start_(warm_start), rounding_(kFloatStep * kFloatStep * warm_start) {}
-
-    /// Weighs a pair of sweeps, by which what the next direction carries of the last is known.
-    /// @param sums   the bodies' part of r.z, r.p_last and the energy
-    void weigh(const BodySums& sums, const RowSums& rows) {
-        rounding_ = std::max(rounding_, kFloatStep * kFloatStep * sums[2]);
-        slope_ = sums[0] + rows.of_step;
-        of_last_ = sums[1] + of_direction_;
-        const double ratio = last_slope_ > 0 ? slope_ / last_slope_ : 0;
-        look_for_rise(ratio, slope_, sums[2] + rows.of_all);
-        carried_ = ratio > 0 && plain_ == 0 ? static_cast<float>(ratio) : 0;
-        of_direction_ = rows.of_step + carried_ * of_direction_;
-    }
-    /// Finds the length of the step along the new direction.
-    /// @param twice_energy   p.Ap
-    void find_length(double twice_energy) {
-        const double length = (slope_ + carried_ * of_last_) / twice_energy;
-        holds_ = plain_ == 0 && length > 1 && slope_ > rounding_;
-        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
-    }
-    /// Begins the next pair of sweeps.
-    void go_on() {
-        last_slope_ = holds_ ? slope_ : 0;
-        if (holds_) return;
-        plain_ = std::max(0, plain_ - 1);
-        of_direction_ = 0;
-        least_slope_ = std::numeric_limits<double>::infinity();
-    }
-
-    /// Returns whether the next pair of sweeps begins with a step along the direction.
-    bool holds() const { return holds_; }
-    float carried() const { return carried_; }
-    float length() const { return length_; }
-    double warm_start() const { return warm_start_; }
-
-  private:
-    /// The relative change that counts as float's rounding, as a part of the warm start or of all
-    /// changes: directions would grow from it.
-    static constexpr double kFloatStep = 1e-6;
-    /// The growth of the slope over the least since directions began, at which they are given up
-    /// for a while, as a factor. Usual 16. More: where float resolves no more, directions are
-    /// rounding, grow from step to step, and lead impulses and velocities apart. Less: useful
-    /// directions are given up.
-    static constexpr double kMostRisen = 16;
-
-    /// Gives directions up for a while after a step that led away from the solution.
-    /// @param ratio   r.z divided by r.z before the step
-    void look_for_rise(double ratio, double slope, double energy) {
-        const bool rises = ratio > kMostCarried || slope > kMostRisen * least_slope_;
-        if (last_slope_ > 0 && !(energy <= last_energy_ && !rises)) {
-            plain_ = pause_;
-            pause_ = 2 * pause_;
-        }
-        last_energy_ = energy;
-        least_slope_ = std::min(least_slope_, slope);
-    }
-
-    double warm_start_ = 0;
-    double rounding_ = 0;                                           ///< rounding of a slope
-    double slope_ = 0, last_slope_ = 0;                             ///< r.z
-    double least_slope_ = std::numeric_limits<double>::infinity();  ///< since a first direction
-    double of_last_ = 0;                                            ///< r.p_last
-    double of_direction_ = 0;                                       ///< rows' part of r.p
-    double last_energy_ = 0;                                        ///< at the end of the last pair
-    int plain_ = 0, pause_ = 1;  ///< pairs without a direction, now and the next time
-    float carried_ = 0, length_ = 1;
-    bool holds_ = false;
-};
 
 /// Pairs of sweeps along conjugate directions over islands that are solved side by side.
 template <class Threads>
@@ -123,7 +44,7 @@ class ConjugateDirections {
             [&](BatchRange batches) { take_warm_start_general(stage, batches, some); },
             [&](BatchRange others) { others_of(stage, others).take_warm_start(); });
         for (const int member : some) {
-            of_[member] = IslandDirections(warm_start[member]);
+            of_[member] = IslandDirections(warm_start[member], kFloatStep);
             for_bodies(member, [&](Range bodies) { add_changes(stage, bodies); });
             for_bodies(member, [&](Range bodies) { take_warm_start(stage, bodies); });
             for_bodies(member, [&](Range bodies) { begin_directions(stage, bodies); });
@@ -207,6 +128,8 @@ class ConjugateDirections {
 
   private:
     using RowSums = IslandDirections::RowSums;
+    /// The relative change that counts as float's rounding: directions would grow from it.
+    static constexpr double kFloatStep = 1e-6;
 
     double find(int member, const RowSums& rows) {
         IslandDirections& of = of_[member];

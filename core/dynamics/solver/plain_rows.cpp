@@ -61,7 +61,8 @@ RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& ro
     const double left = row.targets.*kTarget - row.normal.dot(v);
     const double normal = std::max(0.0, row.normal_impulse + row.normal_mass * left);
     const double change = normal - row.normal_impulse;
-    if (change == 0 && normal == 0) return {};  // apart, and friction is 0 too
+    // Apart, and friction is 0 too unless the normal impulse ended in an adjoint sweep.
+    if (change == 0 && normal == 0 && row.tangent_impulse == Vec4::Zero()) return {};
     row.normal_impulse = normal;
     RowChange changes{change};
     if (kFriction && row.friction > 0) {
@@ -71,6 +72,26 @@ RowChange solve_row(const Simulation& simulation, StepData& step, ContactRow& ro
         row.tangent_impulse = tangent;
     }
     apply_impulse<kTurning>(simulation, step, row, change * row.normal + changes.tangent);
+    return changes;
+}
+
+/// The adjoint of solve_row(): friction first.
+template <double ContactTargets::*kTarget, bool kTurning, bool kFriction>
+RowChange solve_row_adjoint(const Simulation& simulation, StepData& step, ContactRow& row) {
+    const Vec4 v = relative_velocity(step, row.a, row.r_a, row.b, row.r_b, kTurning);
+    double left = row.targets.*kTarget - row.normal.dot(v);
+    RowChange changes;
+    if (kFriction && row.friction > 0) {
+        const Vec4 tangent = friction_impulse(row, v + row.slip_by_turning);
+        changes.tangent = tangent - row.tangent_impulse;
+        row.tangent_impulse = tangent;
+        left -= row.normal_response.dot(changes.tangent);
+    }
+    const double normal = std::max(0.0, row.normal_impulse + row.normal_mass * left);
+    changes.normal = normal - row.normal_impulse;
+    row.normal_impulse = normal;
+    if (changes.normal == 0 && changes.tangent == Vec4::Zero()) return changes;
+    apply_impulse<kTurning>(simulation, step, row, changes.normal * row.normal + changes.tangent);
     return changes;
 }
 
@@ -87,9 +108,12 @@ Impact PlainRows::impact(int) const {
 }
 
 Effort PlainRows::effort_of(int, const Impact& impact) const {
-    return step_.awaits[island_] == Awaits::kPatch
-               ? effort_of_patch(simulation_, rows().size(), impact.fastest)
-               : effort_of_impact(simulation_, rows().size(), impact.fastest, impact.returned > 0);
+    const bool is_fine = impact.returned > 0 && rows().size() <= kFewImpactContacts;
+    const double part = step_.awaits[island_] == Awaits::kPatch ? kLargeImpactResidual
+                        : is_fine                               ? kFewImpactResidual
+                                                                : kImpactResidual;
+    return effort_of_impact(simulation_, rows().size(), part * impact.fastest,
+                            along_directions(Cause::kImpact));
 }
 
 /// Calls visit(row, contact) for all rows; contact: its place in the list.
@@ -195,7 +219,9 @@ double PlainRows::sweep_rows(Sweep sweep) {
     const std::span<ContactRow> all = rows();
     for (std::size_t i = 0; i < all.size(); ++i) {
         ContactRow& row = all[sweep.backward ? all.size() - 1 - i : i];
-        const RowChange change = solve_row<kTarget, kTurning, kFriction>(simulation_, step_, row);
+        const RowChange change =
+            sweep.adjoint ? solve_row_adjoint<kTarget, kTurning, kFriction>(simulation_, step_, row)
+                          : solve_row<kTarget, kTurning, kFriction>(simulation_, step_, row);
         if constexpr (kRolling) solve_rolling_row(simulation_, step_, row, rolling_row_of(row));
         if (sweep.measured) residual = std::max(residual, velocity_left(row, change));
     }
@@ -203,7 +229,7 @@ double PlainRows::sweep_rows(Sweep sweep) {
 }
 
 template <bool kTurning, bool kRolling>
-double PlainRows::sweep(Sweep sweep) {
+double PlainRows::sweep_contacts(Sweep sweep) {
     switch (sweep.pass) {
         case Pass::kSolve:
             return sweep_rows<&ContactTargets::first, kTurning, true, kRolling>(sweep);
@@ -214,19 +240,20 @@ double PlainRows::sweep(Sweep sweep) {
     }
 }
 
-PerMember<double> PlainRows::iterate(Pass pass, const PerMember<Effort>& efforts, Members some) {
+PerMember<double> PlainRows::sweep(Sweep one, Members) {
     const Needs& needs = simulation_.needs;
-    const auto sweep_contacts = [&](Sweep one) {
-        if (needs.rolling) return sweep<true, true>(one);
-        return needs.turning ? sweep<true, false>(one) : sweep<false, false>(one);
-    };
-    return tesserae::iterate(pass, efforts, some, [&](Sweep one, Members) {
-        const double before = one.backward ? sweep_others(one) : 0;
-        const double of_contacts = sweep_contacts(one);
-        PerMember<double> residual;
-        residual[0] = std::max({before, of_contacts, one.backward ? 0 : sweep_others(one)});
-        return residual;
-    });
+    const double before = one.backward ? sweep_others(one) : 0;
+    const double of_contacts = needs.rolling   ? sweep_contacts<true, true>(one)
+                               : needs.turning ? sweep_contacts<true, false>(one)
+                                               : sweep_contacts<false, false>(one);
+    PerMember<double> residual;
+    residual[0] = std::max({before, of_contacts, one.backward ? 0 : sweep_others(one)});
+    return residual;
+}
+
+PerMember<double> PlainRows::iterate(Pass pass, const PerMember<Effort>& efforts, Members some) {
+    return tesserae::iterate(pass, efforts, some,
+                             [&](Sweep one, Members swept) { return sweep(one, swept); });
 }
 
 void PlainRows::apply_impulse(const ContactRow& row, const Vec4& impulse) {

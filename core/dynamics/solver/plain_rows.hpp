@@ -7,6 +7,7 @@
 #include "core/dynamics/solver/constraint_rows.hpp"
 #include "core/dynamics/solver/impact.hpp"
 #include "core/dynamics/solver/joint_block.hpp"
+#include "core/dynamics/solver/plain_directions.hpp"
 #include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
@@ -31,9 +32,21 @@ class PlainRows {
 
     Impact impact(int) const;
     Effort effort_of(int, const Impact& impact) const;
+    static constexpr bool kDropsGains = false;
+    /// Loads of few contacts seldom need directions.
+    bool along_directions(Cause cause) const {
+        return cause == Cause::kImpact && step_.islands.conjugates[island_] &&
+               step_.islands.constraints_in(island_).empty();
+    }
     void start(Cause cause, Members);
     void leave_friction_out(Members) { friction_ = false; }
     PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
+    template <class Instead>
+    PerMember<double> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
+                                               Members some, const Instead& instead) {
+        PlainDirections directions(simulation_, step_, rows(), bodies_, pass);
+        return AlongDirections(*this, directions, pass, efforts).solve(some, instead);
+    }
     double energy(int) { return load(0).energy; }
     LoadWork load(int);
     void leave_part(const PerMember<double>& parts, Members);
@@ -46,6 +59,12 @@ class PlainRows {
     void begin_correction(Members);
     void end_correction(Members);
     void apply_correction(Members);
+    /// Does one sweep. Returns the residual if it is measured.
+    PerMember<double> sweep(Sweep sweep, Members);
+    PerMember<double> sweep(Sweep one, Members some, const PlainDirections&) {
+        return sweep(one, some);
+    }
+    static double rounding_of_loads(int) { return 0; }
 
   private:
     std::span<ContactRow> rows() const {
@@ -70,7 +89,7 @@ class PlainRows {
     template <double ContactTargets::*kTarget, bool kTurning, bool kFriction, bool kRolling>
     double sweep_rows(Sweep sweep);
     template <bool kTurning, bool kRolling>
-    double sweep(Sweep sweep);
+    double sweep_contacts(Sweep sweep);
 
     const Simulation& simulation_;
     StepData& step_;

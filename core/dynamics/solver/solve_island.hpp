@@ -22,6 +22,12 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
                               Members some, int member) {
     rows.simulation();
     rows.step();
+    // Whether a load that gains energy is dropped. One of few rows is kept: it gains only where
+    // there are two or three sweeps.
+    { Rows::kDropsGains } -> std::convertible_to<bool>;
+    // Whether all members go along conjugate directions, for which rows have
+    // iterate_along_directions(pass, efforts, some, instead). These also limit warm starts.
+    { rows.along_directions(cause) } -> std::same_as<bool>;
     { rows.members() } -> std::same_as<Members>;
     rows.island(member);
     // Returns the largest numbers of the island's contacts, and how long an impact is swept.
@@ -57,39 +63,23 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     rows.apply_correction(some);
 };
 
-/// Rows that may go along conjugate directions. They have along_directions(), which is the same
-/// for all members, and iterate_along_directions(efforts, some, instead).
-template <class Rows>
-concept HasDirections = requires(Rows& rows) {
-    rows.along_directions();
-};
-
-/// Returns whether these rows go along conjugate directions.
-template <IslandRows Rows>
-bool goes_along_directions(const Rows& rows) {
-    if constexpr (HasDirections<Rows>)
-        return rows.along_directions();
-    else
-        return false;
-}
-
 /// Solves a pass along conjugate directions, or by one sweep after the other.
 /// @param instead   is called for islands whose directions end with a gain of energy, and replaces
 ///                  their result
 /// @return the residuals of the last sweeps [m/s]
 template <IslandRows Rows, class Instead>
-PerMember<double> solve_pass(Rows& rows, bool along_directions, const PerMember<Effort>& efforts,
+PerMember<double> solve_pass(Rows& rows, Cause cause, Pass pass, const PerMember<Effort>& efforts,
                              Members some, const Instead& instead) {
-    if constexpr (HasDirections<Rows>)
-        if (along_directions) return rows.iterate_along_directions(efforts, some, instead);
-    return rows.iterate(Pass::kSolve, efforts, some);
+    if (rows.along_directions(cause))
+        return rows.iterate_along_directions(pass, efforts, some, instead);
+    return rows.iterate(pass, efforts, some);
 }
 
 /// The impacts of islands, and how each is solved.
 struct ImpactPlan {
     PerMember<Impact> impact;
     PerMember<Effort> efforts;
-    Members hit, along;  ///< islands that have an impact; that go along directions
+    Members hit;  ///< islands that have an impact
 };
 template <IslandRows Rows>
 ImpactPlan plan_impacts(const Rows& rows) {
@@ -104,22 +94,16 @@ ImpactPlan plan_impacts(const Rows& rows) {
         step.was_hit[rows.island(member)] = 1;
         plan.efforts[member] = rows.effort_of(member, plan.impact[member]);
     }
-    if (goes_along_directions(rows))
-        plan.along = plan.hit.where([&](int member) { return plan.impact[member].returned > 0; });
     return plan;
 }
 
 /// Does the compression of impacts, once they are started.
 template <IslandRows Rows>
 void compress(Rows& rows, const ImpactPlan& plan, Members some) {
-    const auto sweep = [&](Members swept) { rows.iterate(Pass::kSolve, plan.efforts, swept); };
-    const Members along = some & plan.along;
-    sweep(some - along);
-    if (along.any())
-        solve_pass(rows, true, plan.efforts, along, [&](Members gains) {
-            rows.start(Cause::kImpact, gains);
-            sweep(gains);
-        });
+    solve_pass(rows, Cause::kImpact, Pass::kSolve, plan.efforts, some, [&](Members gains) {
+        rows.start(Cause::kImpact, gains);
+        rows.iterate(Pass::kSolve, plan.efforts, gains);
+    });
 }
 
 /// Does the restitution of impacts, after the compression.
@@ -127,11 +111,10 @@ template <IslandRows Rows>
 void restitute(Rows& rows, const ImpactPlan& plan, Members some) {
     rows.keep_impact_motion(some);
     // If all contacts have the same restitution, this is already the result.
-    const Members along = some & plan.along;
     PerMember<double> parts;
-    for (const int member : along) parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
-    if (along.any()) rows.leave_part(parts, along);
-    rows.iterate(Pass::kRestitution, plan.efforts, some);
+    for (const int member : some) parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
+    if (rows.along_directions(Cause::kImpact)) rows.leave_part(parts, some);
+    solve_pass(rows, Cause::kImpact, Pass::kRestitution, plan.efforts, some, [](Members) {});
     rows.add_changes(some);
     for (const int member : some)
         rows.leave_part_of_restitution(
@@ -194,18 +177,16 @@ PerMember<double> sweep_loads(Rows& rows) {
     PerMember<Effort> efforts;
     for (const int member : all)
         efforts[member] = effort_of_load(rows.simulation(), rows.step(), rows.island(member));
-    const bool along_directions = goes_along_directions(rows);
-    if (!along_directions) limit_warm_starts(rows);
+    const bool along = rows.along_directions(Cause::kLoad);
+    if (!along) limit_warm_starts(rows);
     const auto instead = [&](Members some) { leave_best_of_warm_starts(rows, some); };
-    const PerMember<double> residual = solve_pass(rows, along_directions, efforts, all, instead);
-    // Plain rows keep their load: it gains energy only where there are two or three sweeps.
-    if constexpr (HasDirections<Rows>)
-        if (!along_directions) {
-            const Members gains = all.where([&](int member) {
-                return residual[member] > efforts[member].enough && rows.load(member).is_gain();
-            });
-            if (gains.any()) instead(gains);
-        }
+    const PerMember<double> residual =
+        solve_pass(rows, Cause::kLoad, Pass::kSolve, efforts, all, instead);
+    if (along || !Rows::kDropsGains) return residual;
+    const Members gains = all.where([&](int member) {
+        return residual[member] > efforts[member].enough && rows.load(member).is_gain();
+    });
+    if (gains.any()) instead(gains);
     return residual;
 }
 

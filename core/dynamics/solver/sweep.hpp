@@ -56,7 +56,7 @@ inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
     Effort effort{settings.iterations, -1, 2, 0, kLeastSweeps};
     if (settings.tolerance > 0) effort.enough = settings.tolerance;
     if (!may_take_more(settings)) return effort;
-    int most = sweeps_of_few(kLoadWork, step.islands.size_of(island), kMostLoadSweeps);
+    int most = sweeps_of_few(kLoadWork, step.islands.size_of(island), kMostSweeps);
     // An odd number begins with a sweep forward, before there are directions. They then start
     // nearer to the load, and fewer towers that start with gaps fall.
     if (step.islands.is_coloured(island)) most = (most - 1) | 1;
@@ -72,8 +72,7 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
     const PhysicsSettings& settings = simulation.settings;
     Effort effort{std::min(settings.iterations, kCorrectionSweeps)};
     if (!may_take_more(settings)) return effort;
-    effort.sweeps =
-        std::max(effort.sweeps, sweeps_of_few(kCorrectionWork, contacts, kMostCorrectionSweeps));
+    effort.sweeps = std::max(effort.sweeps, sweeps_of_few(kCorrectionWork, contacts, kMostSweeps));
     effort.enough = settings.tolerance, effort.every = 2;
     return effort;
 }
@@ -82,39 +81,18 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
 /// that is hit flat leaves without turning. More contacts: boxes that settle cost more.
 constexpr std::size_t kFewImpactContacts = 8;
 constexpr double kFewImpactResidual = 1e-8;
-/// Returns the effort of an impact in a small island. The next sub-step does not go on with it, and
-/// a heavy body that hits light ones needs many sweeps.
-/// @param fastest   see Impact
-/// @param bounces   some body is thrown back
-inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double fastest,
-                               bool bounces) {
-    const auto sweeps = static_cast<int>(kImpactWork / contacts);
-    const bool is_fine = bounces && contacts <= kFewImpactContacts;
-    const double residual = is_fine ? kFewImpactResidual : kImpactResidual;
-    return {std::max(simulation.settings.iterations, sweeps), residual * fastest, 4};
-}
-/// Returns the effort of an impact in a large island from which nothing bounces: a fourth of the
-/// iterations where there are many contacts, as the load that follows takes what is left.
-inline Effort effort_of_large_impact(const Simulation& simulation, std::size_t contacts,
-                                     double fastest) {
-    const auto sweeps = static_cast<int>(kImpactWork / contacts);
-    return {std::max((simulation.settings.iterations + 2) / 4, sweeps),
-            kLargeImpactResidual * fastest, 4};
-}
-/// Returns the effort of an impact in a large island from which bodies bounce: no load makes up for
-/// speed that they do not return. The number of sweeps is even, so that conjugate directions exist
-/// from the first sweep on; it goes further while they lead somewhere.
-inline Effort effort_of_bounce(const Simulation& simulation, std::size_t contacts, double fastest) {
-    const auto sweeps = static_cast<int>(kImpactWork / contacts);
-    return {std::max({simulation.settings.iterations, sweeps, 2}) & ~1,
-            kLargeImpactResidual * fastest, 2, kBounceSweeps};
-}
-
-/// Returns the effort of an impact that is solved among the contacts near it, see ImpactPatches.
-inline Effort effort_of_patch(const Simulation& simulation, std::size_t contacts, double fastest) {
-    Effort effort = effort_of_impact(simulation, contacts, fastest, false);
-    effort.enough = kLargeImpactResidual * fastest;
-    return effort;
+/// Returns the effort of an impact. The next sub-step does not go on with it, and a heavy body that
+/// hits light ones needs many sweeps. Along conjugate directions the number of sweeps is even, so
+/// that there are directions from the first sweep on, and it goes further while they lead
+/// somewhere: no load makes up for speed that bodies do not return.
+/// @param enough   residual at which it ends [m/s]
+/// @param along    it goes along conjugate directions
+inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double enough,
+                               bool along) {
+    const int sweeps =
+        std::max(simulation.settings.iterations, sweeps_of_few(kImpactWork, contacts, kMostSweeps));
+    if (!along) return {sweeps, enough, 4};
+    return {std::max(sweeps, 2) & ~1, enough, 2, kFurtherImpactSweeps};
 }
 
 /// The work and the energy of a load's impulses on an island.
