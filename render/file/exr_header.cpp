@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/file/exr_header.hpp"
 
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfVersion.h>
 
 #include <cerrno>
@@ -125,9 +128,25 @@ ExrHeader checked_exr_header(const std::filesystem::path& path) {
     HeaderWalk walk(path);
     require_header(walk.number() == Imf::MAGIC, "has another magic number");
     const int version = walk.number();
+    require_header(
+        Imf::getVersion(version) == Imf::EXR_VERSION && Imf::supportsFlags(Imf::getFlags(version)),
+        "is of another version of OpenEXR");
     // Headers of several parts end with an empty one.
     while (walk.skip_attributes() && Imf::isMultiPart(version)) continue;
     return {version, walk.position()};
+}
+
+Imf::Header read_exr_header(const std::filesystem::path& path) {
+    int version = checked_exr_header(path).version;
+    Imf::StdIFStream stream(path.c_str());
+    stream.seekg(sizeof Imf::MAGIC + sizeof version);
+    Imf::Header header;
+    header.readFrom(stream, version);
+    // Of several parts each says itself what it is.
+    const bool several = Imf::isMultiPart(version);
+    header.sanityCheck(
+        several ? header.hasType() && Imf::isTiled(header.type()) : Imf::isTiled(version), several);
+    return header;
 }
 
 }  // namespace tesserae::render

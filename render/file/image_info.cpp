@@ -6,7 +6,6 @@
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -68,9 +67,7 @@ void read_version(const Imf::Header& header, const char* name, int& version) {
 ImageInfo read_image_info(const std::filesystem::path& file) {
     ImageInfo info;
     try {
-        checked_exr_header(file);
-        const Imf::InputFile in(file.c_str());
-        const Imf::Header& header = in.header();
+        const Imf::Header header = read_exr_header(file);
         const auto &full = header.displayWindow(), &data = header.dataWindow();
         info.width = full.max.x - full.min.x + 1;
         info.height = full.max.y - full.min.y + 1;

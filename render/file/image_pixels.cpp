@@ -5,7 +5,6 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
-#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfVersion.h>
 #include <half.h>
 
@@ -140,16 +139,12 @@ struct ImagePixels::File {
 };
 
 void ImagePixels::File::open() {
-    int version = checked_exr_header(path).version;
+    const int version = checked_exr_header(path).version;
     require(!Imf::isMultiPart(version), "holds several parts, which is not compared");
     require(!Imf::isNonImage(version), "holds deep pixels, which is not compared");
 
-    // The header first: opening the image takes memory by what it says.
-    Imf::Header header;
-    Imf::StdIFStream stream(path.c_str());
-    stream.seekg(8);
-    header.readFrom(stream, version);
-    header.sanityCheck(Imf::isTiled(version));
+    // Opening the image takes memory by what its header says.
+    const Imf::Header header = read_exr_header(path);
     window = checked_window(header);
     channels = checked_channels(header.channels());
     std::size_t pixel_bytes = 0;

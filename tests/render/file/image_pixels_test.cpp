@@ -225,6 +225,8 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
         const std::string error = error_of<InputError>([&] { const ImagePixels image(path_); });
         EXPECT_NE(error.find(side == 1 ? "more tiles than bytes" : "1 GiB"), std::string::npos)
             << error;
+        // What reads no pixels takes nothing for them.
+        EXPECT_EQ(read_image_info(path_).x1, 30000);
     }
     // An attribute of 2 GB.
     std::string bad = good;
@@ -233,7 +235,7 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
     write(path_, bad);
     const std::string error = error_of<InputError>([&] { const ImagePixels image(path_); });
     EXPECT_NE(error.find("header is cut off"), std::string::npos) << error;
-    // So says what reads no pixels.
+    // So says what reads the header alone.
     const std::string info = error_of<InputError>([&] { read_image_info(path_); });
     EXPECT_NE(info.find("header is cut off"), std::string::npos) << info;
     // Values that OpenEXR reads by their type, whatever their length says: what follows would be
