@@ -57,7 +57,8 @@ class HeaderWalk {
             if (type == "chlist") is_right = skip_channels() == end;
             if (type == "preview" && length >= 8) {
                 const std::int64_t width = number(), height = number();
-                is_right = width >= 0 && height >= 0 && 4 * width * height == length - 8;
+                is_right = width >= 0 && height >= 0 && length % 4 == 0 &&
+                           width * height == (length - 8) / 4;
             }
             require_header(is_right, "a value of its header has another length than its type");
             in_.seekg(end);

@@ -249,6 +249,14 @@ TEST_F(ImagePixelsTest, AHeaderThatClaimsMuchTakesNoMemory) {
         const std::string told = error_of<InputError>([&] { read_image_info(path_); });
         EXPECT_NE(told.find("its header"), std::string::npos) << name << ": " << told;
     }
+    // A preview of (2^31 - 1)^2 pixels, whose bytes no 64 bits with a sign count.
+    bad = good;
+    const std::string size = "\xff\xff\xff\x7f";
+    bad.insert(8, "thumb" + std::string(1, '\0') + "preview" + std::string(1, '\0') + '\x08' +
+                      std::string(3, '\0') + size + size);
+    write(path_, bad);
+    const std::string told = error_of<InputError>([&] { read_image_info(path_); });
+    EXPECT_NE(told.find("its header"), std::string::npos) << told;
 }
 
 TEST_F(ImagePixelsTest, DamageIsAnErrorOrOtherPixelsNeverACrash) {
