@@ -119,9 +119,9 @@ constexpr std::size_t kPatchCost = 64;
 /// step.
 constexpr double kLargeImpactResidual = 1e-3;
 
-/// The most sweeps of an impact while they go along conjugate directions, if that is more than
-/// kImpactWork allows. Usual 40. Fewer: a heavy plate that falls on a bed of balls is not stopped
-/// and returns too slowly.
+/// The most sweeps of an impact from which bodies bounce, while they go along conjugate directions,
+/// if that is more than kImpactWork allows. Usual 40. Fewer: a heavy plate that falls on a bed of
+/// balls is not stopped and returns too slowly.
 constexpr int kFurtherImpactSweeps = 40;
 
 /// The sweeps over a load of few contacts: kLoadWork divided by the number of contacts, but at most

@@ -103,9 +103,8 @@ Impact ColouredRows<Threads>::impact(int member) const {
 
 template <class Threads>
 Effort ColouredRows<Threads>::effort_of(int member, const Impact& impact) const {
-    return effort_of_impact(simulation(), step().islands.size_of(island(member)),
-                            kLargeImpactResidual * impact.fastest,
-                            along_directions(Cause::kImpact));
+    return effort_of_impact(simulation(), step().islands.size_of(island(member)), impact,
+                            kLargeImpactResidual, along_directions(Cause::kImpact));
 }
 
 /// Makes the rows of all contacts, unless an impact has made them before, and applies the impulses

@@ -112,7 +112,7 @@ Effort PlainRows::effort_of(int, const Impact& impact) const {
     const double part = step_.awaits[island_] == Awaits::kPatch ? kLargeImpactResidual
                         : is_fine                               ? kFewImpactResidual
                                                                 : kImpactResidual;
-    return effort_of_impact(simulation_, rows().size(), part * impact.fastest,
+    return effort_of_impact(simulation_, rows().size(), impact, part,
                             along_directions(Cause::kImpact));
 }
 

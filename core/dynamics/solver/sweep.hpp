@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/dynamics/constants.hpp"
+#include "core/dynamics/constraints/contact_targets.hpp"
 #include "core/dynamics/solver/members.hpp"
 #include "core/dynamics/step/step_data.hpp"
 
@@ -82,17 +83,22 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
 constexpr std::size_t kFewImpactContacts = 8;
 constexpr double kFewImpactResidual = 1e-8;
 /// Returns the effort of an impact. The next sub-step does not go on with it, and a heavy body that
-/// hits light ones needs many sweeps. Along conjugate directions the number of sweeps is even, so
-/// that there are directions from the first sweep on, and it goes further while they lead
-/// somewhere: no load makes up for speed that bodies do not return.
-/// @param enough   residual at which it ends [m/s]
-/// @param along    it goes along conjugate directions
-inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts, double enough,
-                               bool along) {
-    const int sweeps =
-        std::max(simulation.settings.iterations, sweeps_of_few(kImpactWork, contacts, kMostSweeps));
+/// hits light ones needs many sweeps. If nothing bounces, a fourth of the iterations is enough for
+/// many contacts: the load that follows takes what is left. What bounces goes further along
+/// conjugate directions while they lead somewhere: no load makes up for speed that bodies do not
+/// return.
+/// @param part    residual at which it ends, as a part of the fastest approach
+/// @param along   it goes along conjugate directions; the number of sweeps is then even, so that
+///                there are directions from the first sweep on
+inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts,
+                               const Impact& impact, double part, bool along) {
+    const int iterations = simulation.settings.iterations;
+    const bool bounces = impact.returned > 0;
+    const int sweeps = std::max(bounces ? iterations : (iterations + 2) / 4,
+                                sweeps_of_few(kImpactWork, contacts, kMostSweeps));
+    const double enough = part * impact.fastest;
     if (!along) return {sweeps, enough, 4};
-    return {std::max(sweeps, 2) & ~1, enough, 2, kFurtherImpactSweeps};
+    return {std::max(sweeps, 2) & ~1, enough, 2, bounces ? kFurtherImpactSweeps : 0};
 }
 
 /// The work and the energy of a load's impulses on an island.
