@@ -15,8 +15,8 @@ namespace tesserae {
 /// impulse, which the energy does not know, and directions would lead away.
 class PlainDirections {
   public:
-    /// @param bodies    the movable ones
-    /// @param pass      tells which targets the rows have
+    /// @param bodies   the movable ones
+    /// @param pass     tells which targets the rows have
     PlainDirections(const Simulation& simulation, StepData& step, std::span<ContactRow> rows,
                     std::span<const BodyId> bodies, Pass pass);
 
@@ -25,7 +25,8 @@ class PlainDirections {
     PerMember<double> find(Members some);
     bool holds(int) const { return begun_.any() && of_.holds(); }
     void go_on(Members some);
-    /// A load of few contacts stays, also where friction has gained energy.
+    /// Only impacts have these directions. What they gain is cut otherwise: see has_jammed() and
+    /// part_of_restitution().
     static bool is_gain(int) { return false; }
     static void take_back(Members) {}
 
