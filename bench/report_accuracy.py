@@ -93,7 +93,7 @@ def label_of(way, of_integrators=False):
 def style_of(way):
     integrator, substeps, iterations = way
     palette = {1: "Blues", 2: "Reds", 4: "Purples", 8: "Greys"}
-    depth = {5: 0.4, 10: 0.7, 40: 1.0}.get(iterations, 0.7)
+    depth = {5: 0.3, 10: 0.45, 30: 0.6, 100: 0.8, 300: 1.0}.get(iterations, 0.7)
     color = "tab:green" if integrator == "euler" else plt.get_cmap(palette[substeps])(depth)
     return {"color": color, "marker": "o^sDvP"[[1, 2, 4, 8].index(substeps)],
             "ms": 4.5, "lw": 1.2}

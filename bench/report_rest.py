@@ -30,7 +30,7 @@ STYLES = {
     "tesserae, sub-steps of 1": ("tab:olive", "P", "--"),
     "tesserae, sub-steps of 2": ("tab:green", "X", "--"),
 }
-DEFAULT = ("tesserae", 240, 1, 10)
+DEFAULT = ("tesserae", 240, 1, 100)
 # What a point's number counts along its curve.
 COUNTED = {"tesserae, by steps": "steps_per_second"}
 

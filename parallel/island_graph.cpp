@@ -9,7 +9,7 @@
 namespace tesserae::parallel {
 namespace {
 
-/// Contacts that make a message: some 20 us of work at 10 iterations. Fewer, and the overhead of a
+/// Contacts that make a message: some 20 us of work at 10 sweeps. Fewer, and the overhead of a
 /// task shows; many more, and the threads run out of messages.
 constexpr std::uint32_t kContactsOfMessage = 32;
 

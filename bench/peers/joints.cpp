@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kStepsATurn = 6;
 /// Iterations of this engine and of Bullet; the default, with which times are compared, is one.
-const std::vector<int> kOwn = {5, 10, 20}, kBullets = {10, 30, 100};
+const std::vector<int> kOwn = {5, 10, 100}, kBullets = {10, 30, 100};
 
 /// An engine with one scene, and what is seen of it.
 struct Run {

@@ -46,17 +46,17 @@ Way way_of_tesserae(const std::string& curve, const PhysicsSettings& settings) {
 std::vector<Way> all_ways() {
     std::vector<Way> ways;
     const double steps = 1 / kPeerStep;
-    for (const int n : {5, PhysicsSettings{}.iterations, 20, 40, 80}) {
+    for (const int n : {5, 10, 20, 40, PhysicsSettings{}.iterations}) {
         ways.push_back({"bullet", 3, steps, 1, n, 0,
                         [n](const PeerScene& scene) { return make_bullet(scene, n); }});
-        if (n < 80)
+        if (n <= 40)
             ways.push_back({"ode", 3, steps, 1, n, 0,
                             [n](const PeerScene& scene) { return make_ode(scene, n); }});
         PhysicsSettings settings;
         settings.iterations = n;
-        if (n > 5) ways.push_back(way_of_tesserae("", settings));
+        ways.push_back(way_of_tesserae("", settings));
         settings.tolerance = 0;
-        if (n < 80) ways.push_back(way_of_tesserae(", all sweeps", settings));
+        if (n <= 40) ways.push_back(way_of_tesserae(", all sweeps", settings));
     }
     for (const double rate : {60.0, 120.0, 480.0}) {
         PhysicsSettings settings;

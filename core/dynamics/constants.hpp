@@ -66,20 +66,30 @@ constexpr double kCorrectedBias = 0.25;
 /// all of its island removes no overlap.
 constexpr double kPartedWeight = 2;
 
-/// The most sweeps of a position correction. Usual 2; more sweeps of a high wall bring nothing.
-/// More: a step costs more while anything overlaps.
-constexpr int kCorrectionSweeps = 2;
+/// The sweeps of a solve of few contacts, of an impact, a load or a position correction, times the
+/// number of contacts; at most `iterations`. Usual 60000. Fewer: towers that start with gaps fall,
+/// heavy bodies sink into light ones or throw them away. More: a step only costs more.
+constexpr std::size_t kSolveWork = 60000;
 
-/// The sweeps of a position correction in an island of few contacts: kCorrectionWork divided by the
-/// number of contacts, but at most kMostSweeps. Usual 20000. Fewer: a body under a heavy one is
-/// pushed from one overlap into the next and sinks in ever deeper, and so does a body in a narrow
-/// wedge. More: a step only costs more.
-constexpr std::size_t kCorrectionWork = 20000;
+/// The most sweeps of a solve of many contacts, at the default of `iterations`: of a load, or of an
+/// impact from which bodies bounce. Usual 10. Fewer: walls lean. More: heaps and walls that are hit
+/// cost more, as no number of sweeps finishes slides.
+constexpr int kManySweeps = 10;
 
-/// The most sweeps that an island of few contacts may take beyond `iterations`, in an impact, a
-/// load or a position correction. Usual 100. Fewer: a heavy body on light ones sinks in or is
-/// thrown back. More: boxes that settle cost more.
-constexpr std::size_t kMostSweeps = 100;
+/// The same while sweeps go along conjugate directions, of a load that nothing has hit in the
+/// sub-step, or of an impact from which bodies bounce. Usual 30. Fewer: high walls that start with
+/// gaps sway and fall; a heavy plate that falls on a bed of balls is not stopped and returns too
+/// slowly. More: large scenes only cost more while they come to rest.
+constexpr int kFurtherSweeps = 30;
+
+/// The same of a position correction, or of an impact from which nothing bounces. Usual 2; the load
+/// that follows takes what is left. More: a step costs more while anything overlaps.
+constexpr int kFewSweeps = 2;
+
+/// The residual at which a position correction ends, as a multiple of `tolerance`. Usual 10: it
+/// moves bodies for one sub-step, and the next one sees what it has left. Less: heaps cost more
+/// while they settle. More: they cost a little less.
+constexpr double kCorrectionTolerance = 10;
 
 /// The greatest speed at which overlapping bodies are moved apart, in least half-sizes per second;
 /// the speed that gravity adds in a sub-step is added to it. Usual 4. More: bodies that start deep
@@ -95,12 +105,6 @@ constexpr double kRestitutionKicks = 4;
 /// The residual at which an impact of a small island is solved, as a part of its fastest approach.
 /// Usual 1e-4. More: a box that is hit flat leaves turning.
 constexpr double kImpactResidual = 1e-4;
-
-/// The sweeps of an impact in an island of few contacts: kImpactWork divided by the number of
-/// contacts, but at most kMostSweeps; `iterations` if that is more. Usual 10000. Less: a body that
-/// hits much lighter ones before a wall is thrown back. More: boxes that settle cost several times
-/// as much.
-constexpr std::size_t kImpactWork = 10000;
 
 /// The number of contacts from which an island solves an impact only among the contacts near it.
 /// Usual 1024.
@@ -118,22 +122,6 @@ constexpr std::size_t kPatchCost = 64;
 /// Usual 1e-3. Less: large heaps cost more while they settle, as something hits something in every
 /// step.
 constexpr double kLargeImpactResidual = 1e-3;
-
-/// The most sweeps of an impact from which bodies bounce, while they go along conjugate directions,
-/// if that is more than kImpactWork allows. Usual 40. Fewer: a heavy plate that falls on a bed of
-/// balls is not stopped and returns too slowly.
-constexpr int kFurtherImpactSweeps = 40;
-
-/// The sweeps over a load of few contacts: kLoadWork divided by the number of contacts, but at most
-/// kMostSweeps; `iterations` if that is more. Usual 60000. Fewer: towers that start with gaps fall,
-/// and high walls with ragged ends lean. More: heaps cost more while they settle.
-constexpr std::size_t kLoadWork = 60000;
-
-/// The most sweeps over a load that nothing has hit in the sub-step, as a multiple of `iterations`,
-/// while they go along conjugate directions. Usual 3. Less: high walls that start with gaps sway
-/// and fall, and high pyramids that start with overlap tremble. More: large scenes only cost more
-/// while they come to rest.
-constexpr int kFurther = 3;
 
 /// The fewest sweeps over a load. Usual 8. Bodies start to lean so slowly that a sweep changes
 /// little and the residual does not show it. Fewer: they lean until the residual exceeds the

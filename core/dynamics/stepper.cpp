@@ -79,6 +79,7 @@ StepReport Stepper::whole_step(double dt, Schedule& schedule) {
         solve_islands(schedule);         // what rests: sequential impulses, warm started
         advance_second_half(schedule);   // rotors projected to unit rotors
         stop_fast_bodies(schedule, FastBodies::Half::kSecond);
+        regain_lost_time(schedule);   // impacts of what was stopped, which goes on
         apply_corrections(schedule);  // what only took overlap away is in no velocity
     }
     return finish_step(schedule);
@@ -98,6 +99,7 @@ void Stepper::put_back_arrays() {
 void Stepper::advance_first_half(Schedule& schedule) {
     const Observed stage(*this, Stage::kAdvanceFirstHalf, simulation_.bodies.size());
     step_.rows_in_use = false;
+    lost_time_.begin();
     has_fast_.assign(simulation_.bodies.size() / kBodyGrain + 1, 0);
     schedule.for_each_range(simulation_.bodies.size(), kBodyGrain, [&](Range bodies) {
         has_fast_[bodies.begin / kBodyGrain] =
@@ -200,17 +202,21 @@ void Stepper::build_islands() {
 
 void Stepper::solve_impacts(Schedule& schedule) {
     const Observed stage(*this, Stage::kSolveImpacts, step_.islands.size());
-    const std::size_t count = step_.contacts.size();
+    solve_impacts_of(step_, schedule);
+}
+
+void Stepper::solve_impacts_of(StepData& step, Schedule& schedule) {
+    const std::size_t count = step.contacts.size();
     hits_.resize(count / kContactGrain + 1);
     for (std::vector<std::uint32_t>& list : hits_) list.clear();
     schedule.for_each_range(count, kContactGrain, [&](Range contacts) {
-        list_impacts(simulation_, step_, contacts, hits_[contacts.begin / kContactGrain]);
+        list_impacts(simulation_, step, contacts, hits_[contacts.begin / kContactGrain]);
     });
     if (std::all_of(hits_.begin(), hits_.end(), [](const auto& list) { return list.empty(); }))
         return;
-    impact_patches_.begin(simulation_, step_, hits_);
-    schedule.solve_impacts(simulation_, step_);
-    if (impact_patches_.end(simulation_, step_)) schedule.solve_impacts(simulation_, step_);
+    impact_patches_.begin(simulation_, step, hits_);
+    schedule.solve_impacts(simulation_, step);
+    if (impact_patches_.end(simulation_, step)) schedule.solve_impacts(simulation_, step);
 }
 
 void Stepper::integrate_velocities(Schedule& schedule) {
@@ -245,6 +251,19 @@ void Stepper::stop_fast_bodies(Schedule& schedule, FastBodies::Half half) {
         if (schedule.any_range(count, kBodyGrain, left)) find_pairs_anew(schedule);
     }
     fast_bodies_.stop(simulation_, step_, schedule, half);
+    lost_time_.add(simulation_, step_, fast_bodies_);
+}
+
+void Stepper::regain_lost_time(Schedule& schedule) {
+    if (!lost_time_.any()) return;
+    const Observed stage(*this, Stage::kRegainLostTime, step_.pairs.size());
+    lost_time_.regain(simulation_, step_, schedule, fast_bodies_, [&](StepData& round) {
+        if (simulation_.needs.internal_edges) internal_edges_.correct(simulation_, round, schedule);
+        begin_contacts(simulation_, round);
+        round.rises.clear(), round.rim_slips.clear();  // these are for the next sub-step
+        island_builder_.build(simulation_, round);
+        solve_impacts_of(round, schedule);
+    });
 }
 
 void Stepper::apply_corrections(Schedule& schedule) {

@@ -11,6 +11,7 @@
 #include "core/dynamics/islands/impact_patches.hpp"
 #include "core/dynamics/islands/islands.hpp"
 #include "core/dynamics/motion/fast_bodies.hpp"
+#include "core/dynamics/motion/lost_time.hpp"
 #include "core/dynamics/solver/first_loads.hpp"
 #include "core/dynamics/step/schedule.hpp"
 #include "core/dynamics/step/step.hpp"
@@ -76,10 +77,12 @@ class Stepper {
     void pose_joints(Schedule& schedule);
     void build_islands();
     void solve_impacts(Schedule& schedule);
+    void solve_impacts_of(StepData& step, Schedule& schedule);
     void integrate_velocities(Schedule& schedule);
     void solve_islands(Schedule& schedule);
     void advance_second_half(Schedule& schedule);
     void stop_fast_bodies(Schedule& schedule, FastBodies::Half half);
+    void regain_lost_time(Schedule& schedule);
     void apply_corrections(Schedule& schedule);
     void keep_impulses(Schedule& schedule);
     StepReport finish_step(Schedule& schedule);
@@ -95,6 +98,7 @@ class Stepper {
     FirstLoads first_loads_;
     ImpactPatches impact_patches_;
     FastBodies fast_bodies_;
+    LostTime lost_time_;
     std::vector<std::vector<std::uint32_t>> hits_;  ///< impacts of every range of contacts
     std::vector<std::uint8_t> has_fast_;            ///< of every range of kBodyGrain bodies
     /// The first kept impulse of every range of contacts, and the end.

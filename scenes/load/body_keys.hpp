@@ -73,15 +73,17 @@ void physics_keys(auto& self, const auto& visit) {
     visit({"steps_per_second", "1/s",
            "The motion has so many time steps a second; more cost time and make it more accurate."},
           self.steps_per_second, Rule::kPositive);
-    visit({"iterations", "",
-           "The contact solver sweeps at most so often over what touches in a sub-step; more hold "
-           "tall stacks and heavy loads better."},
-          self.iterations, IntegerRange{1, 10000});
-    visit({"tolerance", "m/s",
-           "The solver stops once a sweep has changed no velocity by more than this; 0 makes it do "
-           "all sweeps."},
-          self.tolerance,
-          RealOrUnwritten{interval_of(Rule::kNonNegative), PhysicsSettings{}.tolerance});
+    visit(
+        {"iterations", "",
+         "A solve of a group of touching bodies takes at most so many sweeps; large groups take a "
+         "part of them."},
+        self.iterations, IntegerRange{1, 10000});
+    visit(
+        {"tolerance", "m/s",
+         "A solve ends once a sweep has changed no velocity by more than this; 0 makes every solve "
+         "take `iterations` sweeps."},
+        self.tolerance,
+        RealOrUnwritten{interval_of(Rule::kNonNegative), PhysicsSettings{}.tolerance});
     visit({"substeps", "",
            "A step is solved in so many parts; pairs that touch are looked for once a step."},
           self.substeps, IntegerRange{1, 1000});

@@ -95,9 +95,9 @@ void decide_solver(const PhysicsSettings& physics, const Needs& needs, bool fits
                             kColouredFrom),
                 "no body's size fits in floats: contacts one by one");
     const std::string until = physics.tolerance > 0
-                                  ? fmt::format("at most {} iterations each, until {} m/s are left",
+                                  ? fmt::format("at most {} sweeps a solve, until {} m/s are left",
                                                 physics.iterations, physics.tolerance)
-                                  : fmt::format("{} iterations each", physics.iterations);
+                                  : fmt::format("{} sweeps a solve", physics.iterations);
     const std::string substeps = fmt::format("{} a step, {}", physics.substeps, until);
     plan.decide("sub-steps", physics.substeps > 1, substeps, substeps);
     plan.decide("sleeping", physics.sleeping, "islands at rest are left out until touched",

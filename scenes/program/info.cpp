@@ -146,6 +146,8 @@ void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
     const auto penetration = [](const StepFacts& row) { return row.report.penetration; };
     const auto mean = [](const StepFacts& row) { return row.report.mean_penetration; };
     const auto residual = [](const StepFacts& row) { return row.report.residual; };
+    std::uint64_t sweeps = 0;
+    for (const StepFacts& row : rows) sweeps = std::max(sweeps, row.report.sweeps);
     facts.insert(facts.end(), {count("last step", last.step),
                                {"last time",
                                 {{"value", json_number(last.time)}, {"unit", "s"}},
@@ -160,7 +162,8 @@ void append_diagnostics(Facts& facts, const std::vector<StepFacts>& rows) {
                                 fmt::format("{} bodies", last.report.asleep)},
                                largest("deepest penetration", rows, penetration, "m"),
                                largest("largest mean penetration", rows, mean, "m"),
-                               largest("largest solver residual", rows, residual, "m/s")});
+                               largest("largest solver residual", rows, residual, "m/s"),
+                               count("most solver sweeps", sweeps)});
 }
 
 Facts trajectory_facts(const std::filesystem::path& file) {

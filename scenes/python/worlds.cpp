@@ -79,7 +79,7 @@ py::object step(SharedWorld& self, std::optional<double> dt, std::int64_t steps)
         throw py::error_already_set();
     }
     return record("StepReport", report.contacts, report.penetration, report.mean_penetration,
-                  report.residual, report.asleep);
+                  report.residual, report.asleep, report.sweeps);
 }
 
 /// The bytes of an object of Python that has some, such as bytes, bytearray or memoryview.
@@ -258,10 +258,10 @@ thread steps a world, calls of others raise RuntimeError.
 array([[ 0. , -3. ,  0. ,  0.2]])
 )");
     world.def(py::init(&made), py::kw_only(), arg("gravity") = py::none(),
-              arg("steps_per_second") = 240.0, arg("substeps") = 1, arg("iterations") = 10,
+              arg("steps_per_second") = 240.0, arg("substeps") = 1, arg("iterations") = 100,
               arg("tolerance") = 1e-6, arg("integrator") = "midpoint", arg("sleeping") = false,
               arg("seed") = 1, arg("threads") = 0,
-              "__init__(self, *, gravity=None, steps_per_second=240.0, substeps=1, iterations=10, "
+              "__init__(self, *, gravity=None, steps_per_second=240.0, substeps=1, iterations=100, "
               "tolerance=1e-06, integrator='midpoint', sleeping=False, seed=1, threads=0)\n--\n\n"
               "Makes an empty world. The settings are those of a scene's [physics]: gravity (4,) "
               "[m/s^2], by\ndefault (0, -10, 0, 0); threads 0: as many as cores.\n");

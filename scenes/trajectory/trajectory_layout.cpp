@@ -185,9 +185,10 @@ hid_t memory_type(const JointElement& element) {
 
 template <class Pointer, class Facts>
 std::array<Pointer, kObservables.size()> values_of(Facts& f) {
-    return {&f.kinetic_energy,          &f.potential_energy, f.momentum.data(),
-            &f.angular_momentum,        &f.report.contacts,  &f.report.penetration,
-            &f.report.mean_penetration, &f.report.residual,  &f.report.asleep};
+    return {
+        &f.kinetic_energy,  &f.potential_energy,   f.momentum.data(),          &f.angular_momentum,
+        &f.report.contacts, &f.report.penetration, &f.report.mean_penetration, &f.report.residual,
+        &f.report.asleep,   &f.report.sweeps};
 }
 
 }  // namespace
@@ -195,7 +196,8 @@ std::array<Pointer, kObservables.size()> values_of(Facts& f) {
 std::vector<const Handle*> TrajectoryDatasets::all() const {
     std::vector<const Handle*> all = {&step, &time};
     for (const Handle& dataset : state) all.push_back(&dataset);
-    for (const Handle& dataset : observable) all.push_back(&dataset);
+    for (const Handle& dataset : observable)
+        if (dataset) all.push_back(&dataset);
     if (joints > 0)
         for (const Handle& dataset : joint) all.push_back(&dataset);
     return all;
@@ -270,6 +272,7 @@ TrajectoryDatasets open_datasets(const Handle& file, std::uint64_t bodies, std::
                          {bodies, kStateElements[i].width}, file_bytes, opened);
     for (std::size_t i = 0; i < kObservables.size(); ++i) {
         const Observable& o = kObservables[i];
+        if (o.may_lack && !hdf5::has_link(file.get(), observable_path(o.name))) continue;
         data.observable[i] = open_numbers(
             file.get(), observable_path(o.name) + "/value", o.is_count ? H5T_INTEGER : H5T_FLOAT, 8,
             o.width > 1 ? Extent{o.width} : Extent{}, file_bytes, opened);
@@ -367,9 +370,10 @@ void write_row(const TrajectoryDatasets& data, std::uint64_t row, const StepFact
     hdf5::write_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
     const auto values = observable_values(facts);
     for (std::size_t i = 0; i < values.size(); ++i)
-        hdf5::write_rows(data.observable[i], row, 1,
-                         kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
-                         values[i]);
+        if (data.observable[i])
+            hdf5::write_rows(data.observable[i], row, 1,
+                             kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
+                             values[i]);
     const auto of_joints = joint_values(facts.joints);
     for (std::size_t i = 0; data.joints > 0 && i < of_joints.size(); ++i)
         hdf5::write_rows(data.joint[i], row, 1, memory_type(kJointElements[i]), of_joints[i]);
@@ -384,9 +388,10 @@ void read_row(const TrajectoryDatasets& data, std::uint64_t row, StepFacts& fact
     hdf5::read_rows(data.time, row, 1, H5T_NATIVE_DOUBLE, &facts.time);
     const auto values = observable_values(facts);
     for (std::size_t i = 0; i < values.size(); ++i)
-        hdf5::read_rows(data.observable[i], row, 1,
-                        kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
-                        values[i]);
+        if (data.observable[i])
+            hdf5::read_rows(data.observable[i], row, 1,
+                            kObservables[i].is_count ? H5T_NATIVE_UINT64 : H5T_NATIVE_DOUBLE,
+                            values[i]);
     facts.joints = read_joints(data, row);
     const auto arrays = state_arrays(bodies);
     if (bodies.size() == 0) return;

@@ -38,8 +38,9 @@ struct Observable {
     std::size_t width;
     bool is_count;                ///< an integer; else reals
     const char* components = "";  ///< none: a single number
+    bool may_lack = false;        ///< files of earlier versions have none; it then reads as 0
 };
-inline constexpr std::array<Observable, 9> kObservables = {{
+inline constexpr std::array<Observable, 10> kObservables = {{
     {"kinetic_energy", "kg m2 s-2", 1, false},
     {"potential_energy", "kg m2 s-2", 1, false},
     {"momentum", "kg m s-1", 4, false, kVectorComponents},
@@ -49,13 +50,14 @@ inline constexpr std::array<Observable, 9> kObservables = {{
     {"mean_penetration", "m", 1, false},
     {"solver_residual", "m s-1", 1, false},
     {"asleep", "", 1, true},
+    {"sweeps", "", 1, true, "", true},
 }};
 
 /// The datasets that grow by a row with every stored step.
 struct TrajectoryDatasets {
     hdf5::Handle step, time;
     std::array<hdf5::Handle, kStateElements.size()> state;     ///< in that order
-    std::array<hdf5::Handle, kObservables.size()> observable;  ///< in that order
+    std::array<hdf5::Handle, kObservables.size()> observable;  ///< in that order; none: it lacks
     std::array<hdf5::Handle, kJointElements.size()> joint;     ///< in that order; none: no joints
     std::uint64_t joints = 0;
 

@@ -141,6 +141,7 @@ std::vector<StepFacts> TrajectoryReader::facts() const {
         facts[i].time = f.times[i];
     }
     for (std::size_t o = 0; o < kObservables.size(); ++o) {
+        if (!f.data.observable[o]) continue;
         const std::size_t bytes = 8 * kObservables[o].width;
         std::string column(facts.size() * bytes, '\0');
         f.reading([&] {

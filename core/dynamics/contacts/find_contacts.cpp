@@ -2,6 +2,7 @@
 #include "core/dynamics/contacts/find_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/contact/find_contacts.hpp"
 #include "core/dynamics/constants.hpp"
@@ -38,6 +39,14 @@ bool do_balls_meet(const Simulation& simulation, const StepData& step, const Bod
     return meet(v_b - v_a) || meet(v_b) || meet(-v_a);
 }
 
+/// How long the points of a body are near the straight ways on which contacts ahead take them to
+/// be, at most the sub-step [s]: turning takes them off these by as much as is left to the solver.
+double straight_time(const Simulation& simulation, const StepData& step, BodyId id, double spin) {
+    const TypeProperties& type = simulation.type_of(id);
+    const double off = 0.5 * type.arm * spin * spin, most = 2 * kDeepest / kSlop * type.slop;
+    return step.h * step.h * off > most ? std::sqrt(most / off) : step.h;
+}
+
 /// Whether two bodies can touch within the sub-step, by where the balls about them can get.
 bool may_touch(const Simulation& simulation, const StepData& step, const BodyPair& pair) {
     const auto bounds = [&](BodyId id) {
@@ -59,18 +68,23 @@ Margins margins_of(const Simulation& simulation, const StepData& step, BodyId a,
     const Vec4 &v_a = step.velocity[a], &v_b = step.velocity[b];
     const double relative = (v_b - v_a).norm();
     const double fastest = std::max(v_a.norm(), v_b.norm());
-    double speed = relative;
-    if (type_a.arm > 0) speed += type_a.arm * norm(step.angular_velocity[a]);
-    if (type_b.arm > 0) speed += type_b.arm * norm(step.angular_velocity[b]);
+    double speed = relative, time = step.h;
+    for (const BodyId id : {a, b}) {
+        const double arm = simulation.type_of(id).arm;
+        if (!(arm > 0)) continue;
+        const double spin = norm(step.angular_velocity[id]);
+        speed += arm * spin;
+        time = std::min(time, straight_time(simulation, step, id, spin));
+    }
     speed += std::abs(type_b.gravity_scale - type_a.gravity_scale) * step.kick;
-    const double slop = std::min(type_a.slop, type_b.slop), margin = slop + step.h * speed;
+    const double slop = std::min(type_a.slop, type_b.slop), margin = slop + time * speed;
     if (!may_touch(simulation, step, {a, b})) return {slop, slop};
     if (step.h * fastest > kFarWay * (type_a.radius + type_b.radius) &&
         !do_balls_meet(simulation, step, {a, b}))
         return {slop, slop};
     // What would sink in deeper than this is stopped where it touches.
     const double most = 2 * kDeepest / kSlop * slop;
-    return {margin, margin + std::clamp(step.h * (fastest - relative), 0.0, most)};
+    return {margin, margin + std::clamp(time * (fastest - relative), 0.0, most)};
 }
 
 double find_contacts_of(const Simulation& simulation, const StepData& step, const BodyPair& pair,
@@ -100,6 +114,7 @@ void begin_contacts(const Simulation& simulation, StepData& step) {
     resize_anew(step.hit, step.contacts.size());
     std::fill(step.hit.begin(), step.hit.end(), 0.0);
     step.residual.clear();
+    step.sweeps.clear();
     if (!simulation.needs.rims) return;
     resize_anew(step.rises, step.contacts.size());
     resize_anew(step.rim_slips, step.contacts.size());

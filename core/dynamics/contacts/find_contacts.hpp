@@ -8,7 +8,8 @@ namespace tesserae {
 /// The separations [m] up to which a pair's points are found: see find_contacts().
 struct Margins {
     /// For points that can close within one sub-step at the present relative velocity, or are
-    /// within the slop of touching.
+    /// within the slop of touching. Points of a body that turns are found less far ahead: where it
+    /// will be then they do not say, and FastBodies stops it where it touches.
     double as_they_move;
     /// Also for points that can close if others stop one of the bodies, at the other one's speed:
     /// bodies that fall one above the other would sink into each other as the lower one lands.

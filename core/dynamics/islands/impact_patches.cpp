@@ -128,6 +128,7 @@ void ImpactPatches::add_island(StepData& step, std::span<const Pair> pairs) {
     islands.first_row.push_back(static_cast<std::uint32_t>(rows_));
     rows_ += contacts;
     step.residual.push_back(0);
+    step.sweeps.push_back(0);
     step.has_rows.push_back(0);
     step.was_hit.push_back(0);
     step.corrected.push_back(0);

@@ -63,6 +63,7 @@ void IslandBuilder::build(const Simulation& simulation, StepData& step) {
     sort_by_island(simulation, step);
     Islands& islands = step.islands;
     step.residual.resize(islands.size());
+    step.sweeps.assign(islands.size(), 0);
     step.has_rows.assign(islands.size(), 0);
     step.was_hit.assign(islands.size(), 0);
     step.corrected.assign(islands.size(), 0);

@@ -49,29 +49,50 @@ double kept_speed(const Vec4& gravity, double h, const Vec4& v, double part,
 }  // namespace
 
 void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& schedule, Half half) {
+    find_stops(simulation, step, schedule, {}, 0.5 * step.h);
+    for (const BodyId id : stopped_) {
+        put_back(simulation, step, id);
+        const Vec4 gravity = simulation.type_of(id).gravity_scale * simulation.settings.gravity;
+        if (!gravity.isZero(0))
+            step.velocity[id] *=
+                kept_speed(gravity, step.h, step.velocity[id], stop_[id] / (0.5 * step.h), half);
+        if (half == Half::kFirst && simulation.needs.turning)
+            set_inverse_inertia(simulation, step, id);
+    }
+}
+
+void FastBodies::stop(const Simulation& simulation, StepData& step, Schedule& schedule,
+                      std::span<const double> moved) {
+    find_stops(simulation, step, schedule, moved, *std::max_element(moved.begin(), moved.end()));
+    for (const BodyId id : stopped_) put_back(simulation, step, id);
+}
+
+/// Writes stopped_ and stop_.
+void FastBodies::find_stops(const Simulation& simulation, StepData& step, Schedule& schedule,
+                            std::span<const double> moved, double duration) {
+    moved_ = moved, duration_ = duration;
+    stopped_.clear();
     find_candidates(simulation, step, schedule);
     find_paths(simulation, step, schedule);
     find_impacts(schedule);
     list_impacts();
     if (fast_bodies_.empty()) return;
     stop_.assign(simulation.bodies.size(), kNoImpact);
-    stopped_.clear();
     take_impacts(simulation, step, schedule);
+}
 
-    for (const BodyId id : stopped_) {
-        const FreePath::State state = place_[id] == kUnlisted
-                                          ? FreePath(simulation, step, id).at(stop_[id])
-                                          : path_of(id).at(stop_[id]);
-        step.position[id] = state.position;
-        const Vec4 gravity = simulation.type_of(id).gravity_scale * simulation.settings.gravity;
-        if (!gravity.isZero(0))
-            step.velocity[id] *=
-                kept_speed(gravity, step.h, step.velocity[id], stop_[id] / (0.5 * step.h), half);
-        if (!simulation.needs.turning) continue;
-        step.rotor[id] = state.rotor;
-        step.angular_velocity[id] = state.angular_velocity;
-        if (half == Half::kFirst) set_inverse_inertia(simulation, step, id);
-    }
+void FastBodies::put_back(const Simulation& simulation, StepData& step, BodyId id) {
+    const FreePath::State state = place_[id] == kUnlisted
+                                      ? new_path(simulation, step, id).at(stop_[id])
+                                      : path_of(id).at(stop_[id]);
+    step.position[id] = state.position;
+    if (!simulation.needs.turning) return;
+    step.rotor[id] = state.rotor;
+    step.angular_velocity[id] = state.angular_velocity;
+}
+
+FreePath FastBodies::new_path(const Simulation& simulation, const StepData& step, BodyId id) const {
+    return {simulation, step, id, moved_.empty() ? duration_ : moved_[id], duration_};
 }
 
 std::size_t FastBodies::gaps() const {
@@ -88,7 +109,8 @@ void FastBodies::find_candidates(const Simulation& simulation, const StepData& s
     is_fast_.resize(simulation.bodies.size());
     schedule.for_each_range(is_fast_.size(), kFastGrain, [&](Range bodies) {
         for (std::size_t i = bodies.begin; i < bodies.end; ++i)
-            is_fast_[i] = is_fast(simulation, step, static_cast<BodyId>(i));
+            is_fast_[i] =
+                moved_.empty() ? is_fast(simulation, step, static_cast<BodyId>(i)) : moved_[i] > 0;
     });
     lists_.collect(
         for_each_range, step.pairs.size(), kFastGrain,
@@ -115,7 +137,7 @@ void FastBodies::find_paths(const Simulation& simulation, const StepData& step,
     paths_.resize(listed_.size());
     schedule.for_each_range(listed_.size(), kImpactGrain, [&](Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
-            paths_[i].emplace(simulation, step, listed_[i]);
+            paths_[i].emplace(new_path(simulation, step, listed_[i]));
     });
 }
 

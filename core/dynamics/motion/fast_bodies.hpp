@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,8 @@ namespace tesserae {
 /// Keeps fast bodies from passing through others in a half of a sub-step.
 ///
 /// Contacts are found in the middle of a sub-step, where a fast body may be beyond what it has hit.
-/// A pair that would pass is stopped where it first touches; both bodies lose the rest of the half.
+/// A pair that would pass is stopped where it first touches; both bodies lose the rest of the half,
+/// until LostTime gives it back to them.
 /// A stopped body may get in the way of others or no longer reach them. So impacts are taken in the
 /// order of their times, and the pairs of a stopped body are looked at again.
 ///
@@ -31,8 +33,20 @@ class FastBodies {
     /// @param step   as after the half; step.pairs are all bodies that meet in it
     void stop(const Simulation& simulation, StepData& step, Schedule& schedule, Half half);
 
+    /// Does the same once bodies have moved for times of their own, on which no gravity acts.
+    /// @param moved   of every body [s]
+    void stop(const Simulation& simulation, StepData& step, Schedule& schedule,
+              std::span<const double> moved);
+
+    /// Returns the bodies that the last call has stopped, and how long one of them moved before
+    /// [s].
+    std::span<const BodyId> stopped() const { return stopped_; }
+    double moved_for(BodyId id) const { return stop_[id]; }
+
     /// Returns of how many poses of two bodies the last call has found the gap.
     std::size_t gaps() const;
+    /// Returns of how many it finds the gap, about, before bodies are stopped earlier than need be.
+    std::size_t most_gaps() const;
 
   private:
     /// Two bodies of which one is fast.
@@ -45,6 +59,10 @@ class FastBodies {
         std::uint32_t candidate;
     };
 
+    void find_stops(const Simulation& simulation, StepData& step, Schedule& schedule,
+                    std::span<const double> moved, double duration);
+    void put_back(const Simulation& simulation, StepData& step, BodyId id);
+    FreePath new_path(const Simulation& simulation, const StepData& step, BodyId id) const;
     void find_candidates(const Simulation& simulation, const StepData& step, Schedule& schedule);
     void find_paths(const Simulation& simulation, const StepData& step, Schedule& schedule);
     void find_impacts(Schedule& schedule);
@@ -52,9 +70,10 @@ class FastBodies {
     void take_impacts(const Simulation& simulation, const StepData& step, const Schedule& schedule);
     void stop_at(const Simulation& simulation, const StepData& step, BodyId id, double time);
     void stop_all(const Simulation& simulation, const StepData& step, double time);
-    std::size_t most_gaps() const;
     FreePath& path_of(BodyId id) { return *paths_[place_[id]]; }
 
+    std::span<const double> moved_;       ///< of every body [s]; empty: all of the duration
+    double duration_ = 0;                 ///< of the paths [s]
     std::vector<std::uint8_t> is_fast_;   ///< of every body
     std::vector<double> stop_;            ///< time at which every body stops [s], or kNoImpact
     std::vector<ImpactSearch> searches_;  ///< one for every range of pairs

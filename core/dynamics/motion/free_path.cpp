@@ -131,17 +131,19 @@ bool do_balls_meet(const FreePath& a, const FreePath& b, const Vec4& relative, d
 
 }  // namespace
 
-FreePath::FreePath(const Simulation& simulation, const StepData& step, BodyId id)
+FreePath::FreePath(const Simulation& simulation, const StepData& step, BodyId id, double moved,
+                   double duration)
     : id_(id),
       shape_(&simulation.bodies.type_of(id).shape),
       type_(&simulation.type_of(id)),
       integrator_(simulation.settings.integrator),
-      duration_(0.5 * step.h),
+      duration_(duration),
+      stop_(moved < duration ? moved : kNever),
       velocity_(type_->bounded ? step.velocity[id] : Vec4(Vec4::Zero())),
-      start_{step.position[id] - duration_ * velocity_, step.rotor[id], {}} {
+      start_{step.position[id] - moved * velocity_, step.rotor[id], {}} {
     if (!type_->bounded || !simulation.needs.turning) return;
     Bivector reversed = -step.angular_velocity[id];
-    const double turns_for = turning_time(reversed, duration_);
+    const double turns_for = turning_time(reversed, moved);
     if (turns_for < duration_) turning_ = turns_for;
     turn_on(*type_, integrator_, turns_for, start_.rotor, reversed);
     start_.angular_velocity = -reversed;

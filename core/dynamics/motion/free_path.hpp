@@ -12,12 +12,19 @@
 
 namespace tesserae {
 
-/// The free motion of a body over a half of a sub-step, and when it is stopped on its way.
+/// The free motion of a body over a half of a sub-step or another time, and when it is stopped on
+/// its way.
 class FreePath {
   public:
     /// Finds the path that led the body to its present pose, back along its present velocities:
     /// free motion can be reversed (to second order with RotationIntegrator::kEuler).
-    FreePath(const Simulation& simulation, const StepData& step, BodyId id);
+    FreePath(const Simulation& simulation, const StepData& step, BodyId id)
+        : FreePath(simulation, step, id, 0.5 * step.h, 0.5 * step.h) {}
+    /// Finds the path of a body that moved for a part of the time only, and then stood still.
+    /// @param moved      [s], >= 0
+    /// @param duration   of the path [s], >= moved
+    FreePath(const Simulation& simulation, const StepData& step, BodyId id, double moved,
+             double duration);
 
     /// Stops the body from this time on [s].
     void stop(double time) { stop_ = time; }
@@ -30,7 +37,7 @@ class FreePath {
         Rotor rotor;
         Bivector angular_velocity;
     };
-    /// Returns the body's state at a time since the half began [s].
+    /// Returns the body's state at a time since the path began [s].
     State at(double time) const;
     Vec4 position_at(double time) const {
         return start_.position + std::min(time, stop_) * velocity_;
@@ -111,7 +118,7 @@ constexpr double kNoImpact = std::numeric_limits<double>::infinity();
 /// method is conservative advancement (Mirtich 1996) along the normals that the pair's contact
 /// function finds: the gap along a fixed normal is a lower bound of the distance, whatever the
 /// shapes.
-/// @param from      time since the half began [s]; the bodies are known not to pass before it
+/// @param from      time since the paths began [s]; the bodies are known not to pass before it
 ///
 /// A search that ends before it is sure finds the last time at which they surely do not touch.
 /// @return [s], from <= t <= duration, or kNoImpact

@@ -40,10 +40,10 @@ class ColouredRows {
     bool along_directions(Cause) const { return step().islands.conjugates[island(0)]; }
     void start(Cause cause, Members some);
     void leave_friction_out(Members some) { group_.leave_friction_out(some); }
-    PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
+    PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
-    PerMember<double> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
-                                               Members some, const Instead& instead);
+    PerMember<PassEnd> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
+                                                Members some, const Instead& instead);
     double energy(int member) const;
     LoadWork load(int member) const { return {work()[member], energy(member)}; }
     void leave_part(const PerMember<double>& parts, Members some) {
@@ -103,7 +103,7 @@ Impact ColouredRows<Threads>::impact(int member) const {
 
 template <class Threads>
 Effort ColouredRows<Threads>::effort_of(int member, const Impact& impact) const {
-    return effort_of_impact(simulation(), step().islands.size_of(island(member)), impact,
+    return effort_of_impact(simulation().settings, step().islands.size_of(island(member)), impact,
                             kLargeImpactResidual, along_directions(Cause::kImpact));
 }
 
@@ -195,27 +195,21 @@ PerMember<double> ColouredRows<Threads>::residuals(double largest) const {
 }
 
 template <class Threads>
-PerMember<double> ColouredRows<Threads>::iterate(Pass pass, const PerMember<Effort>& efforts,
-                                                 Members some) {
+PerMember<PassEnd> ColouredRows<Threads>::iterate(Pass pass, const PerMember<Effort>& efforts,
+                                                  Members some) {
     return tesserae::iterate(pass, efforts, some,
                              [&](Sweep one, Members swept) { return sweep(one, swept); });
 }
 
-/// Restitution has no directions: it takes more sweeps instead.
+/// Restitution has no directions.
 template <class Threads>
 template <class Instead>
-PerMember<double> ColouredRows<Threads>::iterate_along_directions(Pass pass,
-                                                                  const PerMember<Effort>& efforts,
-                                                                  Members some,
-                                                                  const Instead& instead) {
+PerMember<PassEnd> ColouredRows<Threads>::iterate_along_directions(Pass pass,
+                                                                   const PerMember<Effort>& efforts,
+                                                                   Members some,
+                                                                   const Instead& instead) {
     if (pass == Pass::kRestitution) {
-        PerMember<Effort> longer = efforts;
-        for (const int member : some) {
-            const std::size_t contacts = step().islands.size_of(island(member));
-            longer[member].sweeps =
-                std::max(efforts[member].sweeps, static_cast<int>(kImpactWork / contacts));
-        }
-        return iterate(pass, longer, some);
+        return iterate(pass, efforts, some);
     }
     ConjugateDirections<Threads> directions(group_, threads_);
     return AlongDirections(*this, directions, pass, efforts).solve(some, instead);

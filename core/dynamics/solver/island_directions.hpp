@@ -103,9 +103,8 @@ class AlongDirections {
     }
 
     /// @param instead   is called for islands whose directions end with a gain of energy
-    /// @return the residuals of the last sweeps [m/s]
     template <class Instead>
-    PerMember<double> solve(Members some, const Instead& instead) {
+    PerMember<PassEnd> solve(Members some, const Instead& instead) {
         Members gains;
         for (int number = 0; some.any(); ++number) {
             const Turn turn(Pass::kSolve, efforts_, some, number);
@@ -113,7 +112,8 @@ class AlongDirections {
             sweep(turn);
             const Members ends = ends_of(turn);
             gains = gains | (ends & directions_.begun()).where([&](int member) {
-                return residual_[member] > efforts_[member].enough && directions_.is_gain(member);
+                return result_[member].residual > efforts_[member].enough &&
+                       directions_.is_gain(member);
             });
             some = some - ends;
         }
@@ -121,7 +121,7 @@ class AlongDirections {
             directions_.take_back(gains);
             instead(gains);
         }
-        return residual_;
+        return result_;
     }
 
   private:
@@ -136,12 +136,12 @@ class AlongDirections {
                                            ? rows_.sweep(one, turn.swept(), directions_)
                                            : rows_.sweep(one, turn.swept());
         for (const int member : turn.swept())
-            residual_[member] = turn.measured().has(member) ? left[member] : 0;
+            result_[member] = {turn.measured().has(member) ? left[member] : 0, turn.done(member)};
     }
     /// Returns the islands that end with this turn.
     Members ends_of(const Turn& turn) {
         Members ends = turn.measured().where([&](int member) {
-            return efforts_[member].leads_away(residual_[member], smallest_[member]);
+            return efforts_[member].leads_away(result_[member].residual, smallest_[member]);
         });
         const auto most = [&](int member) {
             return std::max(efforts_[member].sweeps, efforts_[member].further);
@@ -164,9 +164,10 @@ class AlongDirections {
     }
     /// @param moves   the largest change of a body's velocity in the next step [m/s]
     bool is_solved(int member, int done, double moves) {
-        const double left = std::max(residual_[member], moves);
+        const double left = std::max(result_[member].residual, moves);
         if (efforts_[member].is_done(done, left)) return true;
-        if (efforts_[member].enough < 0 || done < efforts_[member].least) return false;
+        if (efforts_[member].all || efforts_[member].enough < 0 || done < efforts_[member].least)
+            return false;
         if (!weighed_.has(member)) {
             weighed_ = weighed_ | Members::only(member);
             rounding_[member] = rows_.rounding_of_loads(member);
@@ -178,7 +179,8 @@ class AlongDirections {
     Directions& directions_;
     Pass pass_;
     const PerMember<Effort>& efforts_;
-    PerMember<double> residual_, smallest_;
+    PerMember<PassEnd> result_;
+    PerMember<double> smallest_;  ///< residual so far [m/s]
     Members weighed_;             ///< islands whose rounding_of_loads() is known
     PerMember<double> rounding_;  ///< [m/s]
 };

@@ -112,7 +112,7 @@ Effort PlainRows::effort_of(int, const Impact& impact) const {
     const double part = step_.awaits[island_] == Awaits::kPatch ? kLargeImpactResidual
                         : is_fine                               ? kFewImpactResidual
                                                                 : kImpactResidual;
-    return effort_of_impact(simulation_, rows().size(), impact, part,
+    return effort_of_impact(simulation_.settings, rows().size(), impact, part,
                             along_directions(Cause::kImpact));
 }
 
@@ -251,7 +251,7 @@ PerMember<double> PlainRows::sweep(Sweep one, Members) {
     return residual;
 }
 
-PerMember<double> PlainRows::iterate(Pass pass, const PerMember<Effort>& efforts, Members some) {
+PerMember<PassEnd> PlainRows::iterate(Pass pass, const PerMember<Effort>& efforts, Members some) {
     return tesserae::iterate(pass, efforts, some,
                              [&](Sweep one, Members swept) { return sweep(one, swept); });
 }

@@ -40,10 +40,10 @@ class PlainRows {
     }
     void start(Cause cause, Members);
     void leave_friction_out(Members) { friction_ = false; }
-    PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
+    PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
-    PerMember<double> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
-                                               Members some, const Instead& instead) {
+    PerMember<PassEnd> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
+                                                Members some, const Instead& instead) {
         PlainDirections directions(simulation_, step_, rows(), bodies_, pass);
         return AlongDirections(*this, directions, pass, efforts).solve(some, instead);
     }

@@ -38,8 +38,7 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     rows.start(cause, some);
     // Turns friction off from the next start() on.
     rows.leave_friction_out(some);
-    // Sweeps a pass. Returns the residuals of the last sweeps [m/s].
-    { rows.iterate(pass, efforts, some) } -> std::same_as<PerMember<double>>;
+    { rows.iterate(pass, efforts, some) } -> std::same_as<PerMember<PassEnd>>;
     // Returns what the impulses have done since start(), see LoadWork. load() takes longer.
     { rows.energy(member) } -> std::same_as<double>;
     { rows.load(member) } -> std::same_as<LoadWork>;
@@ -63,16 +62,26 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     rows.apply_correction(some);
 };
 
+/// Notes how many sweeps a pass over some islands has taken, for the step's report.
+template <IslandRows Rows>
+PerMember<PassEnd> noted(const Rows& rows, const PerMember<PassEnd>& ends, Members some) {
+    for (const int member : some) {
+        int& most = rows.step().sweeps[rows.island(member)];
+        most = std::max(most, ends[member].sweeps);
+    }
+    return ends;
+}
 /// Solves a pass along conjugate directions, or by one sweep after the other.
 /// @param instead   is called for islands whose directions end with a gain of energy, and replaces
 ///                  their result
-/// @return the residuals of the last sweeps [m/s]
 template <IslandRows Rows, class Instead>
-PerMember<double> solve_pass(Rows& rows, Cause cause, Pass pass, const PerMember<Effort>& efforts,
-                             Members some, const Instead& instead) {
-    if (rows.along_directions(cause))
-        return rows.iterate_along_directions(pass, efforts, some, instead);
-    return rows.iterate(pass, efforts, some);
+PerMember<PassEnd> solve_pass(Rows& rows, Cause cause, Pass pass, const PerMember<Effort>& efforts,
+                              Members some, const Instead& instead) {
+    return noted(rows,
+                 rows.along_directions(cause)
+                     ? rows.iterate_along_directions(pass, efforts, some, instead)
+                     : rows.iterate(pass, efforts, some),
+                 some);
 }
 
 /// The impacts of islands, and how each is solved.
@@ -169,9 +178,8 @@ void leave_best_of_warm_starts(Rows& rows, Members some) {
 }
 
 /// Solves loads from their warm starts on.
-/// @return the residuals of the last sweeps [m/s]
 template <IslandRows Rows>
-PerMember<double> sweep_loads(Rows& rows) {
+PerMember<PassEnd> sweep_loads(Rows& rows) {
     const Members all = rows.members();
     rows.start(Cause::kLoad, all);
     PerMember<Effort> efforts;
@@ -180,14 +188,14 @@ PerMember<double> sweep_loads(Rows& rows) {
     const bool along = rows.along_directions(Cause::kLoad);
     if (!along) limit_warm_starts(rows);
     const auto instead = [&](Members some) { leave_best_of_warm_starts(rows, some); };
-    const PerMember<double> residual =
+    const PerMember<PassEnd> ends =
         solve_pass(rows, Cause::kLoad, Pass::kSolve, efforts, all, instead);
-    if (along || !Rows::kDropsGains) return residual;
+    if (along || !Rows::kDropsGains) return ends;
     const Members gains = all.where([&](int member) {
-        return residual[member] > efforts[member].enough && rows.load(member).is_gain();
+        return ends[member].residual > efforts[member].enough && rows.load(member).is_gain();
     });
     if (gains.any()) instead(gains);
-    return residual;
+    return ends;
 }
 
 /// Prepares a load before its rows are made: its static load, and whether a position correction
@@ -212,17 +220,17 @@ void solve_load(Rows& rows) {
     StepData& step = rows.step();
     const Members all = rows.members();
     for (const int member : all) begin_load(simulation, step, rows.island(member));
-    const PerMember<double> residual = sweep_loads(rows);
-    for (const int member : all) step.residual[rows.island(member)] = residual[member];
+    const PerMember<PassEnd> ends = sweep_loads(rows);
+    for (const int member : all) step.residual[rows.island(member)] = ends[member].residual;
     rows.keep(all);
     const Members corrects = corrected(rows);
     if (corrects.any()) {
         PerMember<Effort> efforts;
         for (const int member : corrects)
-            efforts[member] =
-                effort_of_correction(simulation, step.islands.size_of(rows.island(member)));
+            efforts[member] = effort_of_correction(simulation.settings,
+                                                   step.islands.size_of(rows.island(member)));
         rows.begin_correction(corrects);
-        rows.iterate(Pass::kCorrection, efforts, corrects);
+        noted(rows, rows.iterate(Pass::kCorrection, efforts, corrects), corrects);
         rows.end_correction(corrects);
     }
     rows.add_changes(all);

@@ -9,7 +9,6 @@
 
 #include "core/dynamics/constraints/contact_row.hpp"
 #include "core/dynamics/solver/motion_roots.hpp"
-#include "core/dynamics/solver/sweep.hpp"
 
 namespace tesserae {
 namespace {
@@ -352,7 +351,7 @@ void StaticLoad::keep() const {
 }  // namespace
 
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island) {
-    if (!may_take_more(simulation.settings) || simulation.settings.gravity.isZero(0)) return;
+    if (simulation.settings.gravity.isZero(0)) return;
     if (!step.islands.held[island] || step.was_hit[island]) return;
     if (!step.islands.constraints_in(island).empty()) return;
     thread_local StaticLoad load;

@@ -19,7 +19,7 @@ namespace tesserae {
 ///
 /// It does nothing for an island that takes too much work (kStaticWork: walls, heaps), has rolling
 /// friction or joints, is jammed (kPartedWeight), has just been hit, moves faster than gravity
-/// makes it in a sub-step or is not supported, nor with fewer `iterations` than by default.
+/// makes it in a sub-step or is not supported.
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae

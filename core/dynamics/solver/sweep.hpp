@@ -19,14 +19,15 @@ enum class Pass { kSolve, kRestitution, kCorrection };
 /// sweeps.
 struct Effort {
     int sweeps = 0;
-    double enough = -1;  ///< [m/s]; -1: all sweeps
+    double enough = -1;  ///< [m/s]; -1: all sweeps, and nothing is measured
     int every = 1;       ///< number of sweeps from one look at the residual to the next
     int further = 0;     ///< most sweeps, in pairs, while they go along conjugate directions
     int least = 0;       ///< fewest sweeps, unless hardly anything is left: see kLeastSweeps
+    bool all = false;    ///< all sweeps are done, unless they lead away
 
     /// Returns whether `done` sweeps are enough, the last of which had this residual [m/s].
     bool is_done(int done, double residual) const {
-        return residual <= (done < least ? kHardlyAnything : 1) * enough;
+        return !all && residual <= (done < least ? kHardlyAnything : 1) * enough;
     }
     /// Returns whether sweeps lead away from any solution, as where friction jams: see kLedAway.
     /// @param smallest   smallest residual so far, infinite at first [m/s]
@@ -37,45 +38,50 @@ struct Effort {
         return false;
     }
 };
-/// Returns whether the settings ask for at least the default number of sweeps. There may then be
-/// more where they help.
-inline bool may_take_more(const PhysicsSettings& settings) {
-    return settings.tolerance > 0 && settings.iterations >= PhysicsSettings{}.iterations;
+/// How a pass has ended.
+struct PassEnd {
+    double residual = 0;  ///< of the last sweep [m/s]
+    int sweeps = 0;       ///< that it has taken
+};
+
+/// Returns whether each solve takes all of its sweeps, which are then `iterations`.
+inline bool takes_all(const PhysicsSettings& settings) { return settings.tolerance <= 0; }
+/// Returns the tolerance. Where all sweeps are taken, it is one that sweeps lead away from only if
+/// they never come back.
+inline double tolerance_of(const PhysicsSettings& settings) {
+    return takes_all(settings) ? 1000 * PhysicsSettings{}.tolerance : settings.tolerance;
 }
-/// Returns the number of sweeps that an island of so many contacts may take: small islands may take
-/// more, as they cost little.
-inline int sweeps_of_few(std::size_t work, std::size_t contacts, std::size_t most) {
-    return static_cast<int>(std::min(work / contacts, most));
+/// Returns the most sweeps of a solve: `iterations` or less. More than by default give all solves
+/// more, in proportion.
+/// @param usual   the most of it at the default of `iterations`
+inline int most_sweeps(const PhysicsSettings& settings, std::size_t usual) {
+    if (takes_all(settings)) return settings.iterations;
+    const auto most = static_cast<std::size_t>(settings.iterations);
+    const auto by_default = static_cast<std::size_t>(PhysicsSettings{}.iterations);
+    return static_cast<int>(std::min(most, usual * std::max(most, by_default) / by_default));
 }
 /// Returns the effort of a load. The next sub-step starts from its impulses and goes on with them.
-/// Unless the settings ask for fewer sweeps than by default, an island of few contacts may take
-/// more, and one that nothing has hit in the sub-step, which may be about to come to rest, goes
-/// further along conjugate directions.
+/// An island of few contacts may take more sweeps, and one that nothing has hit in the sub-step,
+/// which may be about to come to rest, goes further along conjugate directions.
 inline Effort effort_of_load(const Simulation& simulation, const StepData& step,
                              std::size_t island) {
     const PhysicsSettings& settings = simulation.settings;
-    Effort effort{settings.iterations, -1, 2, 0, kLeastSweeps};
-    if (settings.tolerance > 0) effort.enough = settings.tolerance;
-    if (!may_take_more(settings)) return effort;
-    int most = sweeps_of_few(kLoadWork, step.islands.size_of(island), kMostSweeps);
+    int few = most_sweeps(settings, kSolveWork / step.islands.size_of(island));
     // An odd number begins with a sweep forward, before there are directions. They then start
     // nearer to the load, and fewer towers that start with gaps fall.
-    if (step.islands.is_coloured(island)) most = (most - 1) | 1;
-    effort.sweeps = std::max(effort.sweeps, most);
-    if (!step.was_hit[island])
-        effort.further =
-            effort.sweeps + std::max(0, kFurther * settings.iterations - effort.sweeps) / 2 * 2;
-    return effort;
+    if (step.islands.is_coloured(island) && !takes_all(settings)) few = (few - 1) | 1;
+    const int sweeps = std::max(few, most_sweeps(settings, kManySweeps));
+    const int further =
+        step.was_hit[island] ? 0 : std::max(0, most_sweeps(settings, kFurtherSweeps) - sweeps);
+    return {sweeps,       tolerance_of(settings), 2, sweeps + further / 2 * 2,
+            kLeastSweeps, takes_all(settings)};
 }
 /// Returns the effort of a position correction, after the load. The next sub-step does not go on
 /// with it.
-inline Effort effort_of_correction(const Simulation& simulation, std::size_t contacts) {
-    const PhysicsSettings& settings = simulation.settings;
-    Effort effort{std::min(settings.iterations, kCorrectionSweeps)};
-    if (!may_take_more(settings)) return effort;
-    effort.sweeps = std::max(effort.sweeps, sweeps_of_few(kCorrectionWork, contacts, kMostSweeps));
-    effort.enough = settings.tolerance, effort.every = 2;
-    return effort;
+inline Effort effort_of_correction(const PhysicsSettings& settings, std::size_t contacts) {
+    const std::size_t usual = std::max<std::size_t>(kFewSweeps, kSolveWork / contacts);
+    return {most_sweeps(settings, usual), kCorrectionTolerance * tolerance_of(settings), 2, 0, 0,
+            takes_all(settings)};
 }
 /// The number of contacts up to which an impact from which bodies bounce is solved to a residual of
 /// kFewImpactResidual of its fastest approach: those of two boxes, and the residual at which a box
@@ -83,22 +89,21 @@ inline Effort effort_of_correction(const Simulation& simulation, std::size_t con
 constexpr std::size_t kFewImpactContacts = 8;
 constexpr double kFewImpactResidual = 1e-8;
 /// Returns the effort of an impact. The next sub-step does not go on with it, and a heavy body that
-/// hits light ones needs many sweeps. If nothing bounces, a fourth of the iterations is enough for
-/// many contacts: the load that follows takes what is left. What bounces goes further along
-/// conjugate directions while they lead somewhere: no load makes up for speed that bodies do not
-/// return.
+/// hits light ones needs many sweeps. If nothing bounces, the load that follows takes what is left.
+/// What bounces goes further along conjugate directions while they lead somewhere: no load makes up
+/// for speed that bodies do not return.
 /// @param part    residual at which it ends, as a part of the fastest approach
 /// @param along   it goes along conjugate directions; the number of sweeps is then even, so that
 ///                there are directions from the first sweep on
-inline Effort effort_of_impact(const Simulation& simulation, std::size_t contacts,
+inline Effort effort_of_impact(const PhysicsSettings& settings, std::size_t contacts,
                                const Impact& impact, double part, bool along) {
-    const int iterations = simulation.settings.iterations;
     const bool bounces = impact.returned > 0;
-    const int sweeps = std::max(bounces ? iterations : (iterations + 2) / 4,
-                                sweeps_of_few(kImpactWork, contacts, kMostSweeps));
-    const double enough = part * impact.fastest;
-    if (!along) return {sweeps, enough, 4};
-    return {std::max(sweeps, 2) & ~1, enough, 2, bounces ? kFurtherImpactSweeps : 0};
+    const std::size_t usual =
+        std::max<std::size_t>(bounces ? kManySweeps : kFewSweeps, kSolveWork / contacts);
+    int sweeps = most_sweeps(settings, usual);
+    if (along && sweeps > 1) sweeps -= sweeps % 2;
+    const int further = along && bounces ? most_sweeps(settings, kFurtherSweeps) : 0;
+    return {sweeps, part * impact.fastest, along ? 2 : 4, further, 0, takes_all(settings)};
 }
 
 /// The work and the energy of a load's impulses on an island.
@@ -163,11 +168,11 @@ class Turn {
 
 /// Sweeps islands side by side, each until its effort's end.
 /// @param sweep_all   does a Sweep over some of them and returns its residuals [m/s]
-/// @return the residuals of the last sweeps [m/s]
 template <class SweepAll>
-PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members islands,
-                          const SweepAll& sweep_all) {
-    PerMember<double> residual, smallest;
+PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members islands,
+                           const SweepAll& sweep_all) {
+    PerMember<PassEnd> result;
+    PerMember<double> smallest;
     smallest.fill(std::numeric_limits<double>::infinity());
     islands = islands.where([&](int member) { return efforts[member].sweeps > 0; });
     for (int number = 0; islands.any(); ++number) {
@@ -177,16 +182,17 @@ PerMember<double> iterate(Pass pass, const PerMember<Effort>& efforts, Members i
         for (const int member : turn.swept()) {
             const Effort& effort = efforts[member];
             const int done = turn.done(member);
+            result[member].sweeps = done;
             bool ends = done == effort.sweeps;
             if (turn.measured().has(member)) {
-                residual[member] = left[member];
+                result[member].residual = left[member];
                 ends = ends || effort.is_done(done, left[member]) ||
                        effort.leads_away(left[member], smallest[member]);
             }
             if (ends) islands = islands - Members::only(member);
         }
     }
-    return residual;
+    return result;
 }
 
 }  // namespace tesserae

@@ -14,6 +14,9 @@ struct StepReport {
     double residual = 0;  ///< largest change of a contact's normal velocity that the solver still
                           ///< made in its last iteration [m/s]
     std::uint64_t asleep = 0;  ///< number of bodies asleep
+    /// The most sweeps that a solve of the contacts and joints of a group of touching bodies took:
+    /// of an impact, a load or a position correction; at most PhysicsSettings::iterations.
+    std::uint64_t sweeps = 0;
 };
 
 }  // namespace tesserae

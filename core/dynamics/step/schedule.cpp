@@ -10,9 +10,9 @@ namespace tesserae {
 
 const char* name_of(Stage stage) {
     constexpr const char* kNames[] = {
-        "advance_first_half", "find_pairs",           "find_contacts", "build_islands",
-        "solve_impacts",      "integrate_velocities", "solve_islands", "advance_second_half",
-        "apply_corrections",  "stop_fast_bodies",     "finish_step"};
+        "advance_first_half", "find_pairs",           "find_contacts",    "build_islands",
+        "solve_impacts",      "integrate_velocities", "solve_islands",    "advance_second_half",
+        "apply_corrections",  "stop_fast_bodies",     "regain_lost_time", "finish_step"};
     return kNames[static_cast<std::size_t>(stage)];
 }
 

@@ -8,7 +8,8 @@
 namespace tesserae {
 
 /// The stages of a step, as Stepper::step calls them. All but the last take place once a sub-step;
-/// kStopFastBodies only after halves in which something is fast.
+/// kStopFastBodies only after halves in which something is fast, kRegainLostTime only where it has
+/// stopped something.
 enum class Stage {
     kAdvanceFirstHalf,
     kFindPairs,
@@ -20,6 +21,7 @@ enum class Stage {
     kAdvanceSecondHalf,
     kApplyCorrections,
     kStopFastBodies,
+    kRegainLostTime,
     kFinishStep,
 };
 /// Returns the name of the stage's function, as "find_pairs".

@@ -19,10 +19,10 @@ struct PhysicsSettings {
     double duration = 1;            ///< [s]
     double steps_per_second = 240;  ///< [1/s]
     int substeps = 1;  ///< equal parts of a step: pairs are found once, contacts in each
-    /// The most sweeps of the contact solver over an island in a sub-step; see effort_of_load() for
-    /// islands that may take more.
-    int iterations = 10;
-    double tolerance = 1e-6;  ///< residual [m/s] at which sweeps end; 0: all are done
+    /// The most sweeps of any solve of an island: of an impact, a load or a position correction.
+    /// Large islands take a part of them, see kManySweeps.
+    int iterations = 100;
+    double tolerance = 1e-6;  ///< residual [m/s] at which sweeps end; 0: every solve takes all
     RotationIntegrator integrator = RotationIntegrator::kMidpoint;
     bool sleeping = false;  ///< islands at rest are left out until something touches them
     std::uint64_t seed = 1;

@@ -23,6 +23,8 @@ StepReport report_of(const Simulation& simulation, const StepData& step) {
     if (report.contacts > 0) report.mean_penetration = sum / static_cast<double>(report.contacts);
     for (const double residual : step.residual)
         report.residual = std::max(report.residual, residual);
+    for (const int sweeps : step.sweeps)
+        report.sweeps = std::max(report.sweeps, static_cast<std::uint64_t>(sweeps));
     if (step.asleep.empty()) return report;
     for (const KeptImpulse& impulse : simulation.memory.impulses)
         if (is_asleep(step, impulse.a) || is_asleep(step, impulse.b)) ++report.contacts;

@@ -207,8 +207,10 @@ struct StepData {
     std::vector<KeptManifolds> kept, last_kept;  ///< those of this sub-step and of the last one
     std::vector<std::uint8_t> corrected;         ///< of every island: see is_corrected()
     std::vector<double> residual;                ///< of every island [m/s]
-    std::vector<BodyId> asleep;                  ///< as in StepMemory, but now
-    std::vector<ContactSums> sums;               ///< of every piece of kReportPiece contacts
+    std::vector<int> sweeps;  ///< of every island, and of the patches of impacts behind them: the
+                              ///< most of any of its solves
+    std::vector<BodyId> asleep;     ///< as in StepMemory, but now
+    std::vector<ContactSums> sums;  ///< of every piece of kReportPiece contacts
 
     /// Lists that are made and used within one stage. They are here so that their memory is kept.
     KeptImpulses merged_impulses;

@@ -133,7 +133,7 @@ class World:
         gravity: Optional[npt.ArrayLike] = None,
         steps_per_second: float = 240.0,
         substeps: int = 1,
-        iterations: int = 10,
+        iterations: int = 100,
         tolerance: float = 1e-6,
         integrator: str = "midpoint",
         sleeping: bool = False,

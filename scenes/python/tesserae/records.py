@@ -50,6 +50,7 @@ class StepReport(NamedTuple):
     mean_penetration: float  #: of these points [m]
     residual: float  #: what the solver still changed in its last sweep [m/s]
     asleep: int  #: number of bodies asleep
+    sweeps: int  #: the most that a solve of a group of touching bodies took
 
 
 class ContactChanges(NamedTuple):

@@ -55,7 +55,7 @@ TEST(Sweeps, OfSeveralIslandsAreThoseOfEachAlone) {
         }
         const auto pass = static_cast<Pass>(random() % 3);
         PerMember<std::vector<Sweep>> lists;
-        const PerMember<double> left = iterate(pass, efforts, some, [&](Sweep sweep, Members now) {
+        const PerMember<PassEnd> left = iterate(pass, efforts, some, [&](Sweep sweep, Members now) {
             PerMember<double> residuals;
             EXPECT_TRUE(now.any());
             for (const int i : now) {
@@ -71,7 +71,8 @@ TEST(Sweeps, OfSeveralIslandsAreThoseOfEachAlone) {
                                                [&](int n) { return last = std::pow(factor[i], n); })
                                    : std::vector<Sweep>{};
             ASSERT_EQ(lists[i].size(), alone.size());
-            EXPECT_EQ(left[i], last);
+            EXPECT_EQ(left[i].residual, last);
+            EXPECT_EQ(left[i].sweeps, static_cast<int>(alone.size()));
             for (std::size_t k = 0; k < alone.size(); ++k)
                 EXPECT_EQ(lists[i][k].backward, alone[k].backward);
         }

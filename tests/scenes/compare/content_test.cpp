@@ -91,7 +91,9 @@ TEST_F(ContentTest, OfATrajectoryIsRecomputedFromItsDescription) {
             else if (name.ends_with("/time"))
                 line += "float64 [5]";
             else
-                line += (parent == "contacts" || parent == "asleep" ? "int64 [5]" : "float64 [5]") +
+                line += (parent == "contacts" || parent == "asleep" || parent == "sweeps"
+                             ? "int64 [5]"
+                             : "float64 [5]") +
                         std::string(is_state ? "[3]" : "") +
                         (width.contains(parent) ? width.at(parent) : "");
         }

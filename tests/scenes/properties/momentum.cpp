@@ -13,13 +13,13 @@ namespace {
 
 /// What acts on all bodies together in a step, but for impacts of what contacts do not move.
 struct Acting {
-    Vec4 impulse = Vec4::Zero();  ///< [N s]
-    Bivector angular;             ///< of gravity about the origin [N m s]
-    double by_gravity = 0;        ///< sum of the lengths of what gravity gives [N s]
-    double most = 0;              ///< sum of the lengths of what contacts give [N s]
-    Vec4 of_impacts = Vec4::Zero();
-    Vec4 of_stops = Vec4::Zero();  ///< of fast bodies, which gravity has then for less long
-    bool held = false;             ///< something touches what contacts do not move
+    Vec4 impulse = Vec4::Zero();     ///< [N s]
+    Bivector angular;                ///< of gravity about the origin [N m s]
+    double by_gravity = 0;           ///< sum of the lengths of what gravity gives [N s]
+    double most = 0;                 ///< sum of the lengths of what contacts give [N s]
+    Vec4 of_impacts = Vec4::Zero();  ///< with those of bodies that regain lost time
+    Vec4 of_stops = Vec4::Zero();    ///< of fast bodies, which gravity has then for less long
+    bool held = false;               ///< something touches what contacts do not move
 };
 
 /// Contacts do not change its velocity, or not its angular velocity.
@@ -33,9 +33,18 @@ class ActingObserver : public StageObserver {
   public:
     void begin(Stage stage, std::size_t, const Simulation& simulation,
                const StepData& step) override {
-        if (is_stopping_) acting_.of_stops += momentum(simulation, step) - before_;
-        is_stopping_ = stage == Stage::kStopFastBodies;
+        if (last_ == Stage::kStopFastBodies)
+            acting_.of_stops += momentum(simulation, step) - before_;
+        if (last_ == Stage::kRegainLostTime)
+            (acting_.held ? acting_.of_impacts : acting_.of_stops) +=
+                momentum(simulation, step) - before_;
+        last_ = stage;
         switch (stage) {
+            case Stage::kRegainLostTime:
+                // Its contacts are not told.
+                for (BodyId id = 0; id < step.velocity.size(); ++id)
+                    acting_.held |= holds(simulation, id);
+                [[fallthrough]];
             case Stage::kStopFastBodies:
                 before_ = momentum(simulation, step);
                 break;
@@ -90,7 +99,7 @@ class ActingObserver : public StageObserver {
 
     Acting acting_;
     Vec4 before_ = Vec4::Zero();  ///< the stage
-    bool is_stopping_ = false;
+    Stage last_ = Stage::kFinishStep;
 };
 
 /// Sums of the sizes of what momenta are sums of.

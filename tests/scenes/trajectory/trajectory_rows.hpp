@@ -53,6 +53,7 @@ inline Row make_row(std::uint64_t row, std::size_t bodies, std::size_t joints = 
     facts.report.penetration = normal(random);
     facts.report.mean_penetration = normal(random);
     facts.report.residual = normal(random);
+    facts.report.sweeps = random() % 100;
     facts.report.asleep = random() % 100;
     facts.kinetic_energy = normal(random);
     facts.potential_energy = normal(random);
