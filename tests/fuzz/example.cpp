@@ -112,7 +112,7 @@ void render_example(Render&& render) {
     const scenes::Scene scene = scenes::load_scene_text("scene.toml", kSceneOfEverything, sets);
     const render::Picture picture = {scene.bodies, scene.appearance, scene.materials,
                                      scene.camera, scene.lights,     scene.render};
-    const render::FrameInfo info = {scene.name, scene.hash, "0.1.0"};
+    const render::FrameInfo info = {scene.name, scene.hash, "0.1.0", 0, 0, {}};
     render(picture, info);
 }
 

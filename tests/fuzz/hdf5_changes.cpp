@@ -111,8 +111,11 @@ Handle any_space(FuzzedDataProvider& input, Extent& extent) {
     return {H5Screate_simple(rank, extent.data(), most.data()), H5Sclose};
 }
 
-/// How a dataset is stored.
-Handle any_storage(FuzzedDataProvider& input, int rank) {
+/// How a dataset of this space is stored. Chunks are written whole, whatever the dataset has of
+/// them, so their sides are at most four of its own.
+Handle any_storage(FuzzedDataProvider& input, const Handle& space) {
+    Extent sides(std::max(H5Sget_simple_extent_ndims(space.get()), 0));
+    if (!sides.empty()) H5Sget_simple_extent_dims(space.get(), sides.data(), nullptr);
     Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     const hid_t c = creation.get();
     switch (input.ConsumeIntegralInRange(0, 9)) {
@@ -126,11 +129,11 @@ Handle any_storage(FuzzedDataProvider& input, int rank) {
         case 3:
             break;
         default: {
-            if (rank < 1) break;
-            Extent chunk;
-            for (int i = 0; i < rank; ++i)
-                chunk.push_back(std::clamp<hsize_t>(any_side(input), 1, 1 << 20));
-            checked(H5Pset_chunk(c, rank, chunk.data()));
+            if (sides.empty()) break;
+            for (hsize_t& side : sides)
+                side = std::clamp<hsize_t>(any_side(input), 1,
+                                           4 * std::clamp<hsize_t>(side, 1, 1 << 18));
+            checked(H5Pset_chunk(c, static_cast<int>(sides.size()), sides.data()));
             const auto filters = input.ConsumeIntegral<std::uint8_t>();
             if (filters & 1) checked(H5Pset_shuffle(c));
             if (filters & 2) checked(H5Pset_deflate(c, 1));
@@ -170,7 +173,7 @@ void put_dataset(hid_t file, const std::string& path, FuzzedDataProvider& input)
     const Handle type = any_type(input);
     Extent extent;
     const Handle space = any_space(input, extent);
-    const Handle storage = any_storage(input, static_cast<int>(extent.size()));
+    const Handle storage = any_storage(input, space);
     const Handle dataset(H5Dcreate2(file, path.c_str(), type.get(), space.get(), H5P_DEFAULT,
                                     storage.get(), H5P_DEFAULT),
                          H5Dclose);
@@ -197,8 +200,7 @@ void store_otherwise(hid_t file, const std::string& path, FuzzedDataProvider& in
                             H5Tget_size(type.get()) + input.ConsumeIntegral<std::uint8_t>()));
     else if (input.ConsumeBool())
         checked(H5Tset_order(type.get(), H5T_ORDER_BE));
-    const int rank = H5Sget_simple_extent_ndims(space.get());
-    const Handle storage = any_storage(input, rank);
+    const Handle storage = any_storage(input, space);
     remove(file, path);
     dataset = Handle(H5Dcreate2(file, path.c_str(), type.get(), space.get(), H5P_DEFAULT,
                                 storage.get(), H5P_DEFAULT),
