@@ -14,6 +14,7 @@ std::uint64_t product(std::string_view list) {
     while (at != end) {
         std::uint32_t number = 0;
         const auto [next, error] = std::from_chars(at, end, number);
+        if (error == std::errc::result_out_of_range) return 0;
         if (error == std::errc()) {
             if (__builtin_mul_overflow(product, std::uint64_t{number}, &product)) return 0;
             ++numbers;

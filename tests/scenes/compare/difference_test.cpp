@@ -199,6 +199,9 @@ TEST(BodyName, IsThatOfItsTable) {
     for (std::uint64_t body = 0; body < std::size(expected); ++body)
         EXPECT_EQ(body_name(text, body), expected[body]) << body;
     EXPECT_EQ(body_name("[[lattice]]\ncount = [4294967295, 4294967295, 4294967295, 9]\n", 5), "");
+    EXPECT_EQ(body_name("[[lattice]]\nname = \"a\"\ncount = [99999999991, 1, 1, 1]\n", 5), "");
+    // In no time, however many digits there are.
+    EXPECT_EQ(body_name("[[lattice]]\ncount = " + std::string(1'000'000, '9') + "\n", 5), "");
     EXPECT_EQ(body_name("effective", 0), "");
     EXPECT_EQ(body_name("", 0), "");
 }
