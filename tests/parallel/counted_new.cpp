@@ -11,11 +11,14 @@ namespace {
 
 std::atomic<std::uint64_t> count = 0;
 
-void* allocated(std::size_t size, std::size_t alignment) {
+void* allocated(std::size_t size, std::size_t alignment = alignof(std::max_align_t)) {
     ++count;
     // aligned_alloc() takes whole multiples only.
     const std::size_t whole = (std::max<std::size_t>(size, 1) + alignment - 1) & ~(alignment - 1);
-    void* const memory = std::aligned_alloc(alignment, whole);
+    return std::aligned_alloc(alignment, whole);
+}
+
+void* not_null(void* memory) {
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
 }
@@ -24,8 +27,13 @@ void* allocated(std::size_t size, std::size_t alignment) {
 
 std::uint64_t tesserae::testing::allocations() { return count; }
 
-void* operator new(std::size_t size) { return allocated(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size) { return not_null(allocated(size)); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
+    return not_null(allocated(size, static_cast<std::size_t>(alignment)));
+}
+// Those that do not throw may have memory of their own otherwise, as the address sanitizer's have.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocated(size); }
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
     return allocated(size, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
