@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Holds the program to its promise that nothing is lost: lets system calls fail, kills it, damages its
-# files, starts it twice. Installs what is missing, builds, takes some minutes on two idle cores.
+# files, starts it twice. Installs what is missing, builds, takes up to an hour and a half.
 #   bash tests/faults.sh              all checks, a drawn part of the cases (always the same)
 #   bash tests/faults.sh --quick      a minute's part
 #   bash tests/faults.sh --all        every call and more moments: hours

@@ -17,7 +17,7 @@ LARGER = Scale(size="[96, 64]", samples=4, duration=0.5, longer=1, speed=50)
 AT_MOMENTS = ("simulate every step", "render", "run", "parts", "simulate longer", "run longer",
               "run otherwise")
 # Of each signal, over all of these jobs.
-MOMENTS = {"quick": 4, "usual": 200, "all": 1000}
+MOMENTS = {"quick": 4, "usual": 200, "all": 1400}
 # Every row is flushed at once: twelve rows, each of them all that a flush writes.
 EVERY_FLUSH = Scale(speed=100_000)
 AT_CALLS = ("simulate every step", "simulate longer", "simulate trace", "render", "parts", "join", "run",
