@@ -20,7 +20,7 @@ RESULTS = Path(__file__).resolve().parent / "results"
 LINK = "bench/results"
 END = "<!-- end -->"
 # The program's own settings, as the CSV files of accuracy/ name them.
-DEFAULTS = {"integrator": "midpoint", "substeps": "1", "iterations": "10",
+DEFAULTS = {"integrator": "midpoint", "substeps": "1", "iterations": "100",
             "steps_per_second": "240"}
 
 

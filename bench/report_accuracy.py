@@ -32,7 +32,7 @@ LARGEST_RESIDUAL = np.log(1.5)
 DOUBT = "doubt about the converged run"
 # Noise by construction: not ranked.
 STATISTICS = ("components against Gauss", "speeds against Maxwell", DOUBT)
-DEFAULT = ("midpoint", 1, 10)
+DEFAULT = ("midpoint", 1, 100)
 DEFAULT_STEPS = 240
 
 Point = collections.namedtuple("Point", "steps error time row")
