@@ -83,8 +83,7 @@ class StaticLoad {
     /// Takes the memory of a solve, whether there is one or not: a thread that has seen an island
     /// once then takes no more.
     void reserve();
-    /// Whether they move, but slower than gravity would make them in the sub-step, and are not
-    /// pressed together by more than their weight, as where they cannot part.
+    /// Whether they move, but so slowly that nothing bounces.
     bool creeps();
     void list_points();
     void solve();
@@ -157,7 +156,6 @@ void StaticLoad::reserve() {
 
 bool StaticLoad::creeps() {
     const Vec4 kick = step_->h * simulation_->settings.gravity;
-    const double jammed = kPartedWeight * step_->islands.falling_mass[island_] * kick.norm();
     // Squared, at the first point of each run: what tips over an edge is held there all the way.
     double fastest = 0;
     given_.assign(bodies_.size() + 1, {});
@@ -171,19 +169,16 @@ bool StaticLoad::creeps() {
                                          at - step_->position[b], simulation_->needs.turning);
         fastest = std::max(fastest, (v - kicks * kick).squaredNorm());
         Impulse &of_a = given_[place_of(a)], &of_b = given_[place_of(b)];
-        double load = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const ContactImpulse& last = step_->impulses[i];
             if (last.normal == 0) continue;
-            load += last.normal;
             const Vec4 impulse = last.normal * step_->contacts.normal(i) + last.tangent();
             of_a.straight -= impulse, of_b.straight += impulse;
             of_a.turning += wedge(impulse, places.of(i) - step_->position[a]);
             of_b.turning += wedge(places.of(i) - step_->position[b], impulse);
         }
-        if (load > jammed) return false;
     }
-    if (fastest > kick.squaredNorm()) return false;
+    if (fastest > kRestitutionKicks * kRestitutionKicks * kick.squaredNorm()) return false;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const BodyId id = bodies_[i];
         const TypeProperties& type = simulation_->type_of(id);
@@ -352,7 +347,7 @@ void StaticLoad::keep() const {
 
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island) {
     if (simulation.settings.gravity.isZero(0)) return;
-    if (!step.islands.held[island] || step.was_hit[island]) return;
+    if (!step.islands.held[island]) return;
     if (!step.islands.constraints_in(island).empty()) return;
     thread_local StaticLoad load;
     load.begin(simulation, step, island);

@@ -18,8 +18,7 @@ namespace tesserae {
 /// contacts only push and friction obeys Coulomb's law, as with sweeps.
 ///
 /// It does nothing for an island that takes too much work (kStaticWork: walls, heaps), has rolling
-/// friction or joints, is jammed (kPartedWeight), has just been hit, moves faster than gravity
-/// makes it in a sub-step or is not supported.
+/// friction or joints, moves so fast that bodies bounce (kRestitutionKicks) or is not supported.
 void hold_still(const Simulation& simulation, StepData& step, std::size_t island);
 
 }  // namespace tesserae
