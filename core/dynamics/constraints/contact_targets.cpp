@@ -25,7 +25,7 @@ Approach approach_of(const Simulation& simulation, const StepData& step, const C
     Approach approach;
     approach.e = std::max(a.restitution, b.restitution);
     approach.slowest = slowest_impact(step, a, b);
-    if (step.kick > 0)
+    if (step.kick > 0)  // in the rounds of LostTime gravity has acted already
         approach.g = (a.gravity_scale - b.gravity_scale) * contact.normal.dot(gravity);
     approach.through = 0.5 * half_size * approach.e * approach.e;  // as is the energy at stake
     return approach;

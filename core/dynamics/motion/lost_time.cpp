@@ -74,13 +74,14 @@ void LostTime::find_contacts(const Simulation& simulation) {
         contacts_.resize(first);
         return false;
     };
-    std::vector<std::uint8_t> is_late(left_.size()), is_met(left_.size());
-    for (BodyId id = 0; id < left_.size(); ++id) is_late[id] = left_[id] > 0;
+    is_late_.assign(left_.size(), 0), is_met_.assign(left_.size(), 0);
+    for (BodyId id = 0; id < left_.size(); ++id) is_late_[id] = left_[id] > 0;
     for (const BodyPair& pair : round_.pairs)
-        if ((is_late[pair.a] || is_late[pair.b]) && find(pair))
-            for (const BodyId id : {pair.a, pair.b}) is_met[id] = simulation.type_of(id).movable;
+        if ((is_late_[pair.a] || is_late_[pair.b]) && find(pair))
+            for (const BodyId id : {pair.a, pair.b}) is_met_[id] = simulation.type_of(id).movable;
     for (const BodyPair& pair : round_.pairs)
-        if (!is_late[pair.a] && !is_late[pair.b] && (is_met[pair.a] || is_met[pair.b])) find(pair);
+        if (!is_late_[pair.a] && !is_late_[pair.b] && (is_met_[pair.a] || is_met_[pair.b]))
+            find(pair);
     std::sort(contacts_.begin(), contacts_.end(),
               [](const Contact& c, const Contact& d) { return key_of(c) < key_of(d); });
     round_.contacts = ContactList(contacts_);

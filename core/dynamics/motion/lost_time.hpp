@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/dynamics/motion/fast_bodies.hpp"
@@ -38,6 +39,7 @@ class LostTime {
     std::vector<double> left_;       ///< of every body [s]; empty if none has lost any time
     std::vector<double> moved_;      ///< of every body: how long it has moved in the round [s]
     std::vector<Contact> contacts_;  ///< of the round
+    std::vector<std::uint8_t> is_late_, is_met_;  ///< of every body: has time left; bears one
     StepData round_;
 };
 

@@ -142,7 +142,8 @@ std::string fault_of_momentum(const SmallScene& scene, const Change& defect) {
         const Vec4 left =
             total_momentum(after) - total_momentum(before) - acting.impulse - acting.of_stops;
         // With the rounding of the impacts of what goes on.
-        if (acting.of_stops.norm() > 1.0001 * acting.by_gravity + kInFloat * linear)
+        if (acting.of_stops.norm() >
+            1.0001 * acting.by_gravity + (acting.held ? kInFloat : kInDouble) * linear)
             return fmt::format("step {}: bodies are stopped by {} kg m/s, gravity gives them {}", i,
                                acting.of_stops.norm(), acting.by_gravity);
         if (acting.held) {

@@ -113,7 +113,7 @@ TEST(Tolerance, OfZeroPressesNoLightBoxDeeper) {
     }
 }
 
-/// Where a group cannot be solved in so few sweeps, more of them are more exact.
+/// A heap that falls needs more than ten.
 TEST(Iterations, MoreOfThemMoveDifferently) {
     const auto end_of = [](int iterations) {
         std::mt19937_64 random(74);
