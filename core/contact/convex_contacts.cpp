@@ -158,15 +158,17 @@ class PieceContacts {
     }
 
     /// The nearest points; another that is as near stands for them: of flat pieces that lie on each
-    /// other it would be another place each step, which no warm start survives.
+    /// other it would be another place each step, which no warm start survives. It is at their
+    /// place if it is there but for the border.
     void add_nearest(const ConvexSeparation& nearest, double separation) {
+        const Vec4 middle =
+            0.5 * (nearest.on_a + nearest.on_b) + 0.5 * (radius_a_ - radius_b_) * normal_;
         for (ContactPoint& point : points_)
             if (point.separation <= separation + kAsNear * size_) {
                 point.separation = separation;
+                if (are_one(point.point, middle)) point.point = middle;
                 return;
             }
-        const Vec4 middle =
-            0.5 * (nearest.on_a + nearest.on_b) + 0.5 * (radius_a_ - radius_b_) * normal_;
         points_.push_back({middle, separation, name_of(PointKind::kNearest, false, 0, 0)});
     }
 
@@ -258,10 +260,13 @@ class PieceContacts {
         const double own = of_b ? radius_b_ : radius_a_;
         const Vec4 middle = p + (own + 0.5 * separation) * to_other;
         // Where corners of both bodies meet they are one point.
-        const double near = kSamePoint * size_;
         for (const ContactPoint& point : points_)
-            if ((point.point - middle).squaredNorm() <= near * near) return;
+            if (are_one(point.point, middle)) return;
         points_.push_back({middle, separation, name});
+    }
+    bool are_one(const Vec4& p, const Vec4& q) const {
+        const double near = kSamePoint * size_;
+        return (p - q).squaredNorm() <= near * near;
     }
 
     const Vec4& normal_;

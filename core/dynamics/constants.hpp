@@ -103,8 +103,8 @@ constexpr double kFastestCorrection = 4;
 constexpr double kRestitutionKicks = 4;
 
 /// The residual at which an impact of a small island is solved, as a part of its fastest approach.
-/// Usual 1e-4. More: a box that is hit flat leaves turning.
-constexpr double kImpactResidual = 1e-4;
+/// Usual 1e-8. More: a box that is hit flat leaves turning.
+constexpr double kImpactResidual = 1e-8;
 
 /// The number of contacts from which an island solves an impact only among the contacts near it.
 /// Usual 1024.

@@ -57,18 +57,18 @@ End end_of_generated(const std::string& name, std::uint64_t bodies, int steps,
 }
 
 TEST_F(Golden, GalleryScenesMoveAsEver) {
-    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "1235612a258473756498fe9cca32b39a");
-    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "a22f783c1634e4298b8bdcf566664e5f");
-    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "795eacba5c6204aeb9ec1dc89c365c44");
-    EXPECT_EQ(end_of_gallery("race.toml", 240).hash, "0deb8b9ceafb89bafdcf8a657057808c");
+    EXPECT_EQ(end_of_gallery("first.toml", 240).hash, "b64585168d7ec4ee0714cb323518fa06");
+    EXPECT_EQ(end_of_gallery("shapes.toml", 240).hash, "7575217478c3dca886f2ad89fba5f371");
+    EXPECT_EQ(end_of_gallery("drum.toml", 120).hash, "cc194cff078c0c019e2bcb4870c81b19");
+    EXPECT_EQ(end_of_gallery("race.toml", 240).hash, "a61e46f9e07dadeed9445794a35cdd46");
 }
 
 TEST_F(Golden, GeneratedScenesMoveAsEver) {
     const std::vector<std::string> substeps = {"physics.substeps=4", "physics.iterations=2",
                                                "physics.sleeping=true"};
-    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "2e227d2c0393c118ba6be31b9579ea44");
+    EXPECT_EQ(end_of_generated("boxes", 300, 180).hash, "c019f40536107ad2ae084908507b9409");
     EXPECT_EQ(end_of_generated("boxes", 300, 180, substeps).hash,
-              "480a3199096a77dad7ca78a2f6b54600");
+              "86172b84acee981a4c3381ae525cc696");
     EXPECT_EQ(end_of_generated("gas", 500, 240).hash, "b0fa8a5f6a16859201377f9004af4580");
 }
 
@@ -81,8 +81,8 @@ TEST_F(Golden, LargeIslandsMoveAsEver) {
         EXPECT_EQ(end.hash, hash) << name;
     };
     const std::vector<std::string> substeps = {"physics.substeps=4", "physics.iterations=2"};
-    expect("pile", 1000, 200, {}, "22104d29a61ed10994a597567e9b631f");
-    expect("pile", 1000, 200, substeps, "71cd1f91e432df14dfdff620be531e2b");
+    expect("pile", 1000, 200, {}, "ee775b89dfb918f29a2e94fcca82ef37");
+    expect("pile", 1000, 200, substeps, "f9a37d10e4ba6ace34cc8ece3d242191");
     expect("pyramid", 200, 60, {}, "95d492b161a274b5cdbc81a494db73bc");
     expect("pyramid", 200, 60, substeps, "2d9be4d0c445c68bd2633dd68057d5d1");
 }
@@ -126,8 +126,8 @@ TEST_F(Golden, AFilmIsAsEver) {
          "--size", "64x36", "--samples", "4", "-o", folder.file("film")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(hash_of_content(folder.file("film/trajectory.h5")),
-              "54152b73ffe75ed029237391b7ee53dd");
-    EXPECT_EQ(hash_of_content(folder.file("film")), "86240be12f9e3c89ebbc6a46117dc23a");
+              "a75d405dbe8e0f109707bac1bd39a635");
+    EXPECT_EQ(hash_of_content(folder.file("film")), "6e61e3b93f6b97b0fa293852a00d3668");
 }
 
 }  // namespace

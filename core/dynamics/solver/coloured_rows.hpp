@@ -37,7 +37,7 @@ class ColouredRows {
     Impact impact(int member) const;
     Effort effort_of(int member, const Impact& impact) const;
     static constexpr bool kDropsGains = true;
-    bool along_directions(Cause) const { return step().islands.conjugates[island(0)]; }
+    bool along_directions() const { return step().islands.conjugates[island(0)]; }
     void start(Cause cause, Members some);
     void leave_friction_out(Members some) { group_.leave_friction_out(some); }
     PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
@@ -104,7 +104,7 @@ Impact ColouredRows<Threads>::impact(int member) const {
 template <class Threads>
 Effort ColouredRows<Threads>::effort_of(int member, const Impact& impact) const {
     return effort_of_impact(simulation().settings, step().islands.size_of(island(member)), impact,
-                            kLargeImpactResidual, along_directions(Cause::kImpact));
+                            kLargeImpactResidual, along_directions());
 }
 
 /// Makes the rows of all contacts, unless an impact has made them before, and applies the impulses

@@ -39,11 +39,11 @@ class IslandDirections {
     }
     /// Finds the length of the step along the new direction.
     /// @param twice_energy   p.Ap
-    /// @param allowed        the next pair of sweeps may begin with a step along it
-    void find_length(double twice_energy, bool allowed = true) {
-        const double length = (slope_ + carried_ * of_last_) / twice_energy;
-        holds_ = allowed && plain_ == 0 && length > 1 && slope_ > rounding_;
-        length_ = holds_ ? static_cast<float>(std::min(length, kLongestStep)) : 1;
+    /// @param most           longest step along it
+    void find_length(double twice_energy, double most = kLongestStep) {
+        const double length = std::min(most, (slope_ + carried_ * of_last_) / twice_energy);
+        holds_ = plain_ == 0 && length > 1 && slope_ > rounding_;
+        length_ = holds_ ? static_cast<float>(length) : 1;
     }
     /// Begins the next pair of sweeps.
     void go_on() {

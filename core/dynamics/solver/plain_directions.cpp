@@ -119,13 +119,22 @@ BodySums PlainDirections::weigh_bodies() {
     return sums;
 }
 
-/// Returns whether some contact has all the friction that its normal impulse allows.
-bool PlainDirections::slides() const {
-    constexpr double kNearly = 1 - 1e-12;
-    return std::any_of(rows_.begin(), rows_.end(), [](const ContactRow& row) {
+/// Returns how long the next step may be, along directions that carry so much of the last ones. It
+/// ends where the first contact opens: beyond, the energy is no longer that of the impulses that
+/// contacts may have. It is 0 if some contact has all the friction that its normal impulse allows.
+double PlainDirections::longest_step(double carried) const {
+    constexpr double kNearly = 1 - 1e-12, kRoundedDown = 1 - 1e-7;  // to a float
+    double longest = kLongestStep;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const ContactRow& row = rows_[i];
+        const RowState& state = room_.rows[i];
         const double most = row.friction * row.normal_impulse;
-        return most > 0 && row.tangent_impulse.squaredNorm() > kNearly * most * most;
-    });
+        if (most > 0 && row.tangent_impulse.squaredNorm() > kNearly * most * most) return 0;
+        const double direction =
+            row.normal_impulse - state.last_normal + carried * state.normal_direction;
+        if (direction < 0) longest = std::min(longest, state.last_normal / -direction);
+    }
+    return kRoundedDown * longest;
 }
 
 PerMember<double> PlainDirections::find(Members some) {
@@ -141,7 +150,7 @@ PerMember<double> PlainDirections::find(Members some) {
         twice_energy += product(state.direction, state.of_direction);
         fastest = std::max(fastest, state.direction.velocity.squaredNorm());
     }
-    of_.find_length(twice_energy, !slides());
+    of_.find_length(twice_energy, longest_step(carried));
     largest[0] = of_.length() * std::sqrt(fastest);
     return largest;
 }

@@ -10,9 +10,10 @@
 namespace tesserae {
 
 /// Pairs of sweeps along conjugate directions over contacts that are solved one by one, in double:
-/// see conjugate.hpp. It has the functions of ConjugateDirections. There is no direction after a
-/// pair of sweeps that ends with a contact that slides: its friction is given by its normal
-/// impulse, which the energy does not know, and directions would lead away.
+/// see conjugate.hpp. It has the functions of ConjugateDirections. A step ends where the first
+/// contact opens. In large islands some contact always opens early, and longer steps lead farther.
+/// There is no direction after a pair of sweeps that ends with a contact that slides: its friction
+/// is given by its normal impulse, which the energy does not know, and directions would lead away.
 class PlainDirections {
   public:
     /// @param bodies   the movable ones
@@ -25,7 +26,7 @@ class PlainDirections {
     PerMember<double> find(Members some);
     bool holds(int) const { return begun_.any() && of_.holds(); }
     void go_on(Members some);
-    /// Only impacts have these directions. What they gain is cut otherwise: see has_jammed() and
+    /// What they gain is cut otherwise: see limit_warm_starts(), has_jammed() and
     /// part_of_restitution().
     static bool is_gain(int) { return false; }
     static void take_back(Members) {}
@@ -54,7 +55,7 @@ class PlainDirections {
     void start_anew();
     IslandDirections::RowSums weigh_rows() const;
     BodySums weigh_bodies();
-    bool slides() const;
+    double longest_step(double carried) const;
 
     const Simulation& simulation_;
     StepData& step_;

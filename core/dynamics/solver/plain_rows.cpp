@@ -108,12 +108,9 @@ Impact PlainRows::impact(int) const {
 }
 
 Effort PlainRows::effort_of(int, const Impact& impact) const {
-    const bool is_fine = impact.returned > 0 && rows().size() <= kFewImpactContacts;
-    const double part = step_.awaits[island_] == Awaits::kPatch ? kLargeImpactResidual
-                        : is_fine                               ? kFewImpactResidual
-                                                                : kImpactResidual;
-    return effort_of_impact(simulation_.settings, rows().size(), impact, part,
-                            along_directions(Cause::kImpact));
+    const bool is_patch = step_.awaits[island_] == Awaits::kPatch;
+    const double part = is_patch ? kLargeImpactResidual : kImpactResidual;
+    return effort_of_impact(simulation_.settings, rows().size(), impact, part, along_directions());
 }
 
 /// Calls visit(row, contact) for all rows; contact: its place in the list.

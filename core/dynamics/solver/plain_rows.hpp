@@ -33,10 +33,8 @@ class PlainRows {
     Impact impact(int) const;
     Effort effort_of(int, const Impact& impact) const;
     static constexpr bool kDropsGains = false;
-    /// Loads of few contacts have none: two or three sweeps solve most of them.
-    bool along_directions(Cause cause) const {
-        return cause == Cause::kImpact && step_.islands.conjugates[island_] &&
-               step_.islands.constraints_in(island_).empty();
+    bool along_directions() const {
+        return step_.islands.conjugates[island_] && step_.islands.constraints_in(island_).empty();
     }
     void start(Cause cause, Members);
     void leave_friction_out(Members) { friction_ = false; }

@@ -26,8 +26,9 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     // there are two or three sweeps.
     { Rows::kDropsGains } -> std::convertible_to<bool>;
     // Whether all members go along conjugate directions, for which rows have
-    // iterate_along_directions(pass, efforts, some, instead). These also limit warm starts.
-    { rows.along_directions(cause) } -> std::same_as<bool>;
+    // iterate_along_directions(pass, efforts, some, instead). Where gains are dropped, these also
+    // limit warm starts and drop gains.
+    { rows.along_directions() } -> std::same_as<bool>;
     { rows.members() } -> std::same_as<Members>;
     rows.island(member);
     // Returns the largest numbers of the island's contacts, and how long an impact is swept.
@@ -75,10 +76,10 @@ PerMember<PassEnd> noted(const Rows& rows, const PerMember<PassEnd>& ends, Membe
 /// @param instead   is called for islands whose directions end with a gain of energy, and replaces
 ///                  their result
 template <IslandRows Rows, class Instead>
-PerMember<PassEnd> solve_pass(Rows& rows, Cause cause, Pass pass, const PerMember<Effort>& efforts,
-                              Members some, const Instead& instead) {
+PerMember<PassEnd> solve_pass(Rows& rows, Pass pass, const PerMember<Effort>& efforts, Members some,
+                              const Instead& instead) {
     return noted(rows,
-                 rows.along_directions(cause)
+                 rows.along_directions()
                      ? rows.iterate_along_directions(pass, efforts, some, instead)
                      : rows.iterate(pass, efforts, some),
                  some);
@@ -109,7 +110,7 @@ ImpactPlan plan_impacts(const Rows& rows) {
 /// Does the compression of impacts, once they are started.
 template <IslandRows Rows>
 void compress(Rows& rows, const ImpactPlan& plan, Members some) {
-    solve_pass(rows, Cause::kImpact, Pass::kSolve, plan.efforts, some, [&](Members gains) {
+    solve_pass(rows, Pass::kSolve, plan.efforts, some, [&](Members gains) {
         rows.start(Cause::kImpact, gains);
         rows.iterate(Pass::kSolve, plan.efforts, gains);
     });
@@ -122,8 +123,8 @@ void restitute(Rows& rows, const ImpactPlan& plan, Members some) {
     // If all contacts have the same restitution, this is already the result.
     PerMember<double> parts;
     for (const int member : some) parts[member] = 1 + std::min(1.0, plan.impact[member].returned);
-    if (rows.along_directions(Cause::kImpact)) rows.leave_part(parts, some);
-    solve_pass(rows, Cause::kImpact, Pass::kRestitution, plan.efforts, some, [](Members) {});
+    if (rows.along_directions()) rows.leave_part(parts, some);
+    solve_pass(rows, Pass::kRestitution, plan.efforts, some, [](Members) {});
     rows.add_changes(some);
     for (const int member : some)
         rows.leave_part_of_restitution(
@@ -185,11 +186,10 @@ PerMember<PassEnd> sweep_loads(Rows& rows) {
     PerMember<Effort> efforts;
     for (const int member : all)
         efforts[member] = effort_of_load(rows.simulation(), rows.step(), rows.island(member));
-    const bool along = rows.along_directions(Cause::kLoad);
-    if (!along) limit_warm_starts(rows);
+    const bool along = rows.along_directions();
+    if (!along || !Rows::kDropsGains) limit_warm_starts(rows);
     const auto instead = [&](Members some) { leave_best_of_warm_starts(rows, some); };
-    const PerMember<PassEnd> ends =
-        solve_pass(rows, Cause::kLoad, Pass::kSolve, efforts, all, instead);
+    const PerMember<PassEnd> ends = solve_pass(rows, Pass::kSolve, efforts, all, instead);
     if (along || !Rows::kDropsGains) return ends;
     const Members gains = all.where([&](int member) {
         return ends[member].residual > efforts[member].enough && rows.load(member).is_gain();

@@ -83,11 +83,6 @@ inline Effort effort_of_correction(const PhysicsSettings& settings, std::size_t 
     return {most_sweeps(settings, usual), kCorrectionTolerance * tolerance_of(settings), 2, 0, 0,
             takes_all(settings)};
 }
-/// The number of contacts up to which an impact from which bodies bounce is solved to a residual of
-/// kFewImpactResidual of its fastest approach: those of two boxes, and the residual at which a box
-/// that is hit flat leaves without turning. More contacts: boxes that settle cost more.
-constexpr std::size_t kFewImpactContacts = 8;
-constexpr double kFewImpactResidual = 1e-8;
 /// Returns the effort of an impact. The next sub-step does not go on with it, and a heavy body that
 /// hits light ones needs many sweeps. If nothing bounces, the load that follows takes what is left.
 /// What bounces goes further along conjugate directions while they lead somewhere: no load makes up

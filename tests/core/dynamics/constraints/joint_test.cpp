@@ -344,8 +344,8 @@ TEST(Joint, KeepsItsRowsVelocitiesInAnImpact) {
             if (before.step.velocity[2] == after.step.velocity[2]) continue;
             ++hits;
             fastest = std::max(fastest, rows_of(before.step).norm());
-            // Sweeps end at this part of the impact's speed.
-            EXPECT_LT((rows_of(after.step) - rows_of(before.step)).norm(), kImpactResidual * 12)
+            EXPECT_LT((rows_of(after.step) - rows_of(before.step)).norm(),
+                      PhysicsSettings{}.tolerance)
                 << i;
         }
         EXPECT_GT(hits, 0);

@@ -172,7 +172,8 @@ Struck strike(int boxes, double mass, double friction, double rolling, bool weig
                             {0, (boxes + 0.5) * height + fall, 0, 0});
     const double speed = weightless ? 0.5 : std::sqrt(20 * fall);
     if (weightless) bodies.velocity[ball] = {0, -speed, 0, 0};
-    const PhysicsSettings settings = weightless ? without_gravity() : PhysicsSettings{};
+    PhysicsSettings settings = weightless ? without_gravity() : PhysicsSettings{};
+    if (rolling > 0) settings.iterations = 500;  // they have no conjugate directions
     Stepper world(bodies, settings);
     Struck struck;
     double least = INFINITY, won = 0;
