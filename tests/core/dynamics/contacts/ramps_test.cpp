@@ -84,6 +84,7 @@ Stepper world_of(const Slide& slide, bool of_planes, PhysicsSettings settings) {
     return Stepper(scene_of(slide, of_planes), settings);
 }
 
+/// Of seed 22 an impact's sweeps did not converge: its steps led beyond where contacts open.
 void expect_ramps_as_planes(std::uint64_t seeds) {
     // The box stood still at the floor's side, which is covered by the ramp, or lost half its
     // speed.
@@ -106,8 +107,7 @@ void expect_ramps_as_planes(std::uint64_t seeds) {
     }
 }
 
-TEST(Ramps, AreLeftAndEnteredAsPlanesAre) { expect_ramps_as_planes(10); }
-TEST(RampsSlow, AreLeftAndEnteredAsPlanesAre) { expect_ramps_as_planes(30); }
+TEST(Ramps, AreLeftAndEnteredAsPlanesAre) { expect_ramps_as_planes(30); }
 
 /// What stands out of the floor at the foot of a ramp is no internal edge: it stops the box.
 TEST(Ramps, EndAtAStep) {
