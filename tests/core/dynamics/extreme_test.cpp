@@ -195,7 +195,8 @@ TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
                 world.step(1 / steps);
                 for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
             }
-            EXPECT_LT(fastest, kFastestCorrection * radius) << steps << " steps/s, overlap " << overlap;
+            EXPECT_LT(fastest, kFastestCorrection * radius)
+                << steps << " steps/s, overlap " << overlap;
         }
 }
 

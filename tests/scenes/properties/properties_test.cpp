@@ -145,7 +145,8 @@ TEST(MomentumSlow, ComesFromGravityAndWhatIsHeld) {
 /// One does not converge in its sweeps, and parts by 4e-6 m/s where its residual is 3e-4 m/s: the
 /// masses of friction are kept to eight bits, in frames that depend on the axes.
 TEST(TurningSlow, ChangesNothing) { expect_of_all(properties::fault_of_turning, kMany, {2548}); }
-/// Two allow one sweep, whose result is that of the order of a pair's contacts; a mirror changes it.
+/// Two allow one sweep, whose result is that of the order of a pair's contacts; a mirror changes
+/// it.
 TEST(MirroringSlow, ChangesNothing) {
     expect_of_all(properties::fault_of_mirroring, kMany, {1644, 2751});
 }
