@@ -4,7 +4,7 @@
 # with software GL. Installs what is missing, builds, takes a few minutes.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/../scenes/setup.sh"
-install_packages "${packages[@]}" chromium chromium-driver python3-selenium python3-openimageio python3-numpy
+install_packages "${packages[@]}" chromium chromium-driver python3-selenium python3-openimageio python3-h5py python3-numpy
 build "$root/build/release" tesserae -DCMAKE_BUILD_TYPE=Release
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
