@@ -186,11 +186,11 @@ PerMember<PassEnd> sweep_loads(Rows& rows) {
     PerMember<Effort> efforts;
     for (const int member : all)
         efforts[member] = effort_of_load(rows.simulation(), rows.step(), rows.island(member));
-    const bool along = rows.along_directions();
-    if (!along || !Rows::kDropsGains) limit_warm_starts(rows);
+    const bool directions_do_it = Rows::kDropsGains && rows.along_directions();
+    if (!directions_do_it) limit_warm_starts(rows);
     const auto instead = [&](Members some) { leave_best_of_warm_starts(rows, some); };
     const PerMember<PassEnd> ends = solve_pass(rows, Pass::kSolve, efforts, all, instead);
-    if (along || !Rows::kDropsGains) return ends;
+    if (directions_do_it || !Rows::kDropsGains) return ends;
     const Members gains = all.where([&](int member) {
         return ends[member].residual > efforts[member].enough && rows.load(member).is_gain();
     });

@@ -46,10 +46,11 @@ struct PassEnd {
 
 /// Returns whether each solve takes all of its sweeps, which are then `iterations`.
 inline bool takes_all(const PhysicsSettings& settings) { return settings.tolerance <= 0; }
-/// Returns the tolerance. Where all sweeps are taken, it is one that sweeps lead away from only if
-/// they never come back.
+/// Returns the tolerance [m/s]. Where all sweeps are taken, it only tells which of them lead away,
+/// and is so large that those which come back do not count.
 inline double tolerance_of(const PhysicsSettings& settings) {
-    return takes_all(settings) ? 1000 * PhysicsSettings{}.tolerance : settings.tolerance;
+    const double kWhereAllAreTaken = 1000 * PhysicsSettings{}.tolerance;
+    return takes_all(settings) ? kWhereAllAreTaken : settings.tolerance;
 }
 /// Returns the most sweeps of a solve: `iterations` or less. More than by default give all solves
 /// more, in proportion.
