@@ -95,7 +95,6 @@ class ColouredGroup {
         for (const int member : members())
             stage_.parting[member] = parting_of(stage_.step, island(member));
     }
-    void leave_friction_out(Members some) { stage_.frictionless = some; }
 
     const ColouredStage& stage() const { return stage_; }
     Members members() const {

@@ -39,7 +39,6 @@ class ColouredRows {
     static constexpr bool kDropsGains = true;
     bool along_directions() const { return step().islands.conjugates[island(0)]; }
     void start(Cause cause, Members some);
-    void leave_friction_out(Members some) { group_.leave_friction_out(some); }
     PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
     PerMember<PassEnd> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,

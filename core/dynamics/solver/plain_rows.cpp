@@ -161,14 +161,12 @@ void PlainRows::make_rows() {
     const auto start = [&](std::size_t place, const Parting& of_pair) {
         const Contact contact = step_.contacts[place];
         if (!made) *row = make_row(simulation_, step_, contact);
-        if (!friction_) row->friction = 0;
         const ContactImpulse last =
             cause_ == Cause::kLoad ? step_.impulses[place] : ContactImpulse{};
         start_row(simulation_, step_, contact, place, last, cause_, of_pair, *row);
         if (!simulation_.needs.rolling) return;
         RollingRow& rolling = rolling_row_of(*row);
         if (!made) rolling = make_rolling_row(simulation_, step_, *row);
-        if (!friction_) rolling.arm = 0;
         start_rolling_row(*row, cause_ == Cause::kLoad ? step_.angular_impulses[place] : Bivector{},
                           rolling);
     };
@@ -177,7 +175,7 @@ void PlainRows::make_rows() {
         const Parting of_pair = parting.at(step_, {run.begin, run.end});
         for (std::size_t place = run.begin; place < run.end; ++place, ++row) start(place, of_pair);
     }
-    step_.has_rows[island_] = friction_;  // without, they are not those of the contacts
+    step_.has_rows[island_] = 1;
 }
 
 /// Islands are solved one after the other on a thread, so that one block serves all of them.
@@ -230,6 +228,8 @@ double PlainRows::sweep_contacts(Sweep sweep) {
     switch (sweep.pass) {
         case Pass::kSolve:
             return sweep_rows<&ContactTargets::first, kTurning, true, kRolling>(sweep);
+        case Pass::kFrictionless:
+            return sweep_rows<&ContactTargets::first, kTurning, false, false>(sweep);
         case Pass::kRestitution:
             return sweep_rows<&ContactTargets::second, kTurning, true, kRolling>(sweep);
         default:

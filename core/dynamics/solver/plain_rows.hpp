@@ -37,7 +37,6 @@ class PlainRows {
         return step_.islands.conjugates[island_] && step_.islands.constraints_in(island_).empty();
     }
     void start(Cause cause, Members);
-    void leave_friction_out(Members) { friction_ = false; }
     PerMember<PassEnd> iterate(Pass pass, const PerMember<Effort>& efforts, Members some);
     template <class Instead>
     PerMember<PassEnd> iterate_along_directions(Pass pass, const PerMember<Effort>& efforts,
@@ -95,7 +94,6 @@ class PlainRows {
     ConstraintRows<MotionOfState> others_;  ///< the constraints that are no contacts
     JointBlock* block_ = nullptr;           ///< of these, if they are solved as one
     Cause cause_ = Cause::kLoad;
-    bool friction_ = true;
     std::span<const BodyId> bodies_;  ///< the movable ones, each once
     std::span<BodyMotion> motions_;   ///< their motions before the rows' impulses or a correction
 };

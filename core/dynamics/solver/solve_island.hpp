@@ -37,8 +37,6 @@ concept IslandRows = requires(Rows& rows, Cause cause, Pass pass, const PerMembe
     // Makes the rows and applies the impulses that they start from. The bodies first get back
     // the motion that they had before the first call, which is for all members.
     rows.start(cause, some);
-    // Turns friction off from the next start() on.
-    rows.leave_friction_out(some);
     { rows.iterate(pass, efforts, some) } -> std::same_as<PerMember<PassEnd>>;
     // Returns what the impulses have done since start(), see LoadWork. load() takes longer.
     { rows.energy(member) } -> std::same_as<double>;
@@ -142,9 +140,8 @@ void solve_impact(Rows& rows) {
         return can_jam(rows.simulation(), plan.impact[member]) && has_jammed(rows.energies(member));
     });
     if (jammed.any()) {
-        rows.leave_friction_out(jammed);
         rows.start(Cause::kImpact, jammed);
-        compress(rows, plan, jammed);
+        noted(rows, rows.iterate(Pass::kFrictionless, plan.efforts, jammed), jammed);
     }
     const Members returning =
         plan.hit.where([&](int member) { return plan.impact[member].returned > 0; });

@@ -11,9 +11,17 @@
 
 namespace tesserae {
 
-/// The kinds of passes over an island: a compression or a load; the restitution; the position
-/// correction after a load, by normal impulses alone.
-enum class Pass { kSolve, kRestitution, kCorrection };
+/// The kinds of passes over an island: a compression or a load; a compression without friction,
+/// where friction jams; the restitution; the position correction after a load.
+enum class Pass { kSolve, kFrictionless, kRestitution, kCorrection };
+/// Returns whether a pass is by normal impulses alone.
+constexpr bool is_by_normals(Pass pass) {
+    return pass == Pass::kFrictionless || pass == Pass::kCorrection;
+}
+/// Returns whether a pass aims at ContactTargets::first, else at `second`.
+constexpr bool aims_at_first(Pass pass) {
+    return pass == Pass::kSolve || pass == Pass::kFrictionless;
+}
 
 /// How long a pass goes on: until a sweep's residual is at most `enough`, but at most `sweeps`
 /// sweeps.
@@ -130,7 +138,7 @@ struct Sweep {
 inline Sweep sweep_of(Pass pass, const Effort& effort, int iteration) {
     const int left = effort.sweeps - 1 - iteration;
     const bool asks = effort.enough >= 0 && left % effort.every == 0;
-    return {pass, (left % 2 != 0) == (pass == Pass::kSolve), left == 0 || asks};
+    return {pass, (left % 2 != 0) == aims_at_first(pass), left == 0 || asks};
 }
 
 /// A turn of the sweeps over islands that are solved side by side. All sweeps of a turn go the same

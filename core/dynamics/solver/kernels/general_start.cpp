@@ -29,9 +29,9 @@ void put_pairs(const ColouredStage& stage, std::uint32_t index, Members some, Ei
         put_pair(stage, member, batch.contact[k], batch.points[k], k, pairs);
         const Contact& c = stage.step.contacts[batch.contact[k]];
         if constexpr (kFriction)
-            coloured.pair_friction[index].friction.lane[k] = float_friction(stage, member, c);
+            coloured.pair_friction[index].friction.lane[k] = float_friction(stage, c);
         if constexpr (kRolling) {
-            coloured.pair_rolling[index].arm.lane[k] = float_rolling_arm(stage, member, c);
+            coloured.pair_rolling[index].arm.lane[k] = float_rolling_arm(stage, c);
             for (std::uint32_t p = 0; p < batch.points[k]; ++p)
                 put_angular_impulse(stage, member, batch.contact[k] + p, k,
                                     coloured.general_rolling[batch.row + p].impulse);

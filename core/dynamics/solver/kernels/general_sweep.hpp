@@ -315,10 +315,10 @@ template <class Call>
 auto with_kind_of_general(const ColouredIslands& coloured, Pass pass, const Call& call) {
     constexpr std::true_type yes;
     constexpr std::false_type no;
-    const bool corrects = pass == Pass::kCorrection;
-    if (coloured.rolling && !corrects)
+    const bool by_normals = is_by_normals(pass);
+    if (coloured.rolling && !by_normals)
         return coloured.turns_unevenly ? call(yes, yes, yes) : call(yes, yes, no);
-    if (coloured.friction && !corrects)
+    if (coloured.friction && !by_normals)
         return coloured.turns_unevenly ? call(yes, no, yes) : call(yes, no, no);
     return coloured.turns_unevenly ? call(no, no, yes) : call(no, no, no);
 }

@@ -93,7 +93,6 @@ struct ColouredStage {
     bool shares_batches = false;  ///< see ColouredIslands::shares_batches
     Cause cause = Cause::kLoad;
     PerMember<Parting> parting = {};
-    Members frictionless = {};  ///< the islands whose friction is left out
     bool made = false;  ///< the rows are there from the impact before, but for what they start from
 
     /// Returns the mass unit of an island [kg].

@@ -124,8 +124,7 @@ template <class F>
 /// 3e38.
 constexpr double kLargestFloatFriction = 1e18;
 
-inline float float_friction(const ColouredStage& stage, int member, const Contact& c) {
-    if (stage.frictionless.has(member)) return 0;
+inline float float_friction(const ColouredStage& stage, const Contact& c) {
     return static_cast<float>(
         std::min(friction_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }
@@ -135,8 +134,7 @@ inline Bivector bivector_in_lane(const std::array<Eight, 6>& from, std::size_t l
             from[3].lane[lane], from[4].lane[lane], from[5].lane[lane]};
 }
 
-inline float float_rolling_arm(const ColouredStage& stage, int member, const Contact& c) {
-    if (stage.frictionless.has(member)) return 0;
+inline float float_rolling_arm(const ColouredStage& stage, const Contact& c) {
     return static_cast<float>(
         std::min(rolling_arm_of(stage.simulation, c.a, c.b), kLargestFloatFriction));
 }

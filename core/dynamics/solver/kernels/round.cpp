@@ -83,12 +83,12 @@ void start_all(const ColouredStage& stage, BatchRange batches, LaneCount lanes, 
             put_point(stage, member, batch.contact[k], k, points);
             const Contact& c = stage.step.contacts[batch.contact[k]];
             if constexpr (kFriction)
-                coloured.round_friction[i].friction.lane[k] = float_friction(stage, member, c);
+                coloured.round_friction[i].friction.lane[k] = float_friction(stage, c);
             if (kFriction && slips_by_turning(stage))
                 put_turning(stage, batch.contact[k], k, points.turning);
             if constexpr (kRolling) {
                 RoundRolling& rolling = coloured.round_rolling[i];
-                rolling.arm.lane[k] = float_rolling_arm(stage, member, c);
+                rolling.arm.lane[k] = float_rolling_arm(stage, c);
                 put_turning(stage, batch.contact[k], k, rolling.turning);
                 put_angular_impulse(stage, member, batch.contact[k], k, rolling.impulse);
             }

@@ -120,9 +120,9 @@ template <class Call>
 auto with_kind_of_round(const ColouredIslands& coloured, Pass pass, const Call& call) {
     constexpr std::true_type yes;
     constexpr std::false_type no;
-    const bool corrects = pass == Pass::kCorrection;
-    if (coloured.rolling && !corrects) return call(yes, yes);
-    return coloured.friction && !corrects ? call(yes, no) : call(no, no);
+    const bool by_normals = is_by_normals(pass);
+    if (coloured.rolling && !by_normals) return call(yes, yes);
+    return coloured.friction && !by_normals ? call(yes, no) : call(no, no);
 }
 
 }  // namespace tesserae::lanes

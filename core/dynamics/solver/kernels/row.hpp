@@ -44,7 +44,7 @@ template <class F>
 template <class F>
 [[gnu::always_inline]] inline F target_of(const NormalLanes<F>& lanes, const NormalRow& row,
                                           const Eight& second, Pass pass) {
-    return pass == Pass::kSolve ? lanes.in_row.load(row.target) : lanes.in_list.load(second);
+    return aims_at_first(pass) ? lanes.in_row.load(row.target) : lanes.in_list.load(second);
 }
 /// Does one step of a normal impulse.
 /// @param left   the target less the present normal velocity

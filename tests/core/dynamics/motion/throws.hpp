@@ -149,4 +149,28 @@ inline Throw throw_at_each_other(std::mt19937_64& random, int kind, int other, b
     return scene;
 }
 
+/// One to four slender bodies that whirl between one to three walls, much rougher than any
+/// material.
+inline Throw throw_between_rough_walls(std::mt19937_64& random) {
+    Throw scene;
+    scene.settings.gravity.setZero();
+    scene.settings.iterations = random() % 2 == 0 ? 10 : 100;
+    const double friction = spread(random, 0.3, 30), restitution = random_part(random);
+    for (auto walls = 1 + random() % 3; walls > 0; --walls)
+        add(scene.bodies,
+            plane_type(random_vector(random, 1).normalized(), -0.6, friction, restitution));
+    for (auto bodies = 1 + random() % 4; bodies > 0; --bodies) {
+        const double size = uniform_in(random, 0.3, 1.2), thin = size * spread(random, 0.01, 0.3);
+        BodyType type =
+            random() % 2 == 0 ? capsule_type(thin, size) : box_type({size, size, thin, thin});
+        if (random() % 2 == 0) type = box_type({size, thin, thin, thin});
+        type.mass = spread(random, 0.1, 10);
+        type.friction = friction, type.restitution = restitution;
+        const Vec4 place = random_vector(random, 0.8), velocity = random_vector(random, 5);
+        const Bivector spin = random_plane(random, uniform_in(random, 0, 30));
+        add(scene.bodies, type, place, velocity, spin, exp(random_plane(random, 2)));
+    }
+    return scene;
+}
+
 }  // namespace tesserae::testing
