@@ -42,7 +42,9 @@ USUAL, QUICK = 3, 0
 
 def chosen(calls, count, random_numbers):
     """Which of a family's calls are hit: the first and the last on each kind of file, and `count`
-    drawn ones. @return numbers from 1 on"""
+    drawn ones; all if it is None. @return numbers from 1 on"""
+    if count is None:
+        return range(1, len(calls) + 2)
     kinds = {}
     for number, (_, path) in enumerate(calls, 1):
         kinds.setdefault(re.sub(r"\d+", "N", path), []).append(number)
@@ -129,10 +131,7 @@ def disturb(job, table, count):
             for how, last in HOWS[family] if of_family else ():
                 if program != "tesserae" and how in HARMLESS:
                     continue  # another program may take it for a failure
-                numbers = chosen(of_family, count, random_numbers)
-                if count is None:
-                    numbers = range(1, len(of_family) + 2)
-                for number in numbers:
+                for number in chosen(of_family, count, random_numbers):
                     fault = Fault(family, number, how, last, program)
                     try_one(job, fault, table)
 
