@@ -134,6 +134,7 @@ def disturb(job, table, count):
                 for number in chosen(of_family, count, random_numbers):
                     fault = Fault(family, number, how, last, program)
                     try_one(job, fault, table)
+    table.tell(f"failing calls: {job.name}")
 
 
 def try_one(job, fault, table):

@@ -106,6 +106,7 @@ def at_calls(job, table, effort):
                           f"killed by {how} at {at}, while it could at {readable_at}")
             if readable:
                 readable_at = at
+    table.tell(f"SIGKILL at a call that changes files: {job.name}")
 
 
 def check(setup, table, effort, case=None):
