@@ -41,8 +41,11 @@ DatasetStorage checked_storage(const Handle& dataset, const std::string& name,
     if (layout == H5D_CHUNKED) {
         compression = static_cast<double>(kMostCompression);
         storage.chunk.resize(storage.extent.size());
-        checked(H5Pget_chunk(creation.get(), static_cast<int>(storage.chunk.size()),
-                             storage.chunk.data()));
+        const int axes = checked(H5Pget_chunk(
+            creation.get(), static_cast<int>(storage.chunk.size()), storage.chunk.data()));
+        // HDF5 itself does not compare them, and looks for chunks without end.
+        require(static_cast<std::size_t>(axes) == storage.extent.size(),
+                "has chunks of another number of axes");
         for (hsize_t side : storage.chunk) chunk_bytes *= static_cast<double>(side);
         require(chunk_bytes <= 256.0 * (1 << 20), "has chunks of more than 256 MiB");
     }

@@ -54,8 +54,8 @@ Handle file_access(bool writable) {
     checked(H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG));
     // Writers hold a lock of their own, from before HDF5 opens the file until it has its name.
     checked(H5Pset_file_locking(access.get(), false, true));
-    if (!writable) return access;
     checked(H5Pset_driver(access.get(), checked(ordered_driver()), nullptr));
+    if (!writable) return access;
     // Structures leave memory only while the file is flushed.
     H5AC_cache_config_t cache;
     cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;

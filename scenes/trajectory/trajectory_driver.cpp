@@ -33,6 +33,8 @@ constexpr haddr_t kMostAddress = (haddr_t{1} << 63) - 1;
 
 /// Where a superblock of version 0 holds the file's end.
 constexpr std::size_t kEndAt = 40;
+/// Bytes at the beginning of a group's names, and most bytes of these: more than 10,000 long ones.
+constexpr std::size_t kHeapBytes = 32, kMostNameBytes = 4 << 20;
 
 /// A growing file's superblock says that it ends further behind than it does, by an eighth of it
 /// and 1 MiB, at most 64 MiB: what a reader that has looked at the superblock already finds to have
@@ -258,11 +260,17 @@ herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) {
 
 haddr_t length(const H5FD_t* file, H5FD_mem_t) { return length_of(ordered(file)); }
 
-herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void* buffer) {
-    const OrderedFile& f = ordered(file);
-    auto* bytes = static_cast<unsigned char*>(buffer);
+std::uint64_t word_at(const unsigned char* bytes) {
+    std::uint64_t word;
+    std::memcpy(&word, bytes, sizeof word);
+    return word;
+}
+
+/// Reads what is held, and else the file.
+/// @return bytes read, fewer only at the file's end; -1 on failure, with errno
+ssize_t read_now(const OrderedFile& f, haddr_t at, std::size_t size, unsigned char* bytes) {
     const ssize_t moved = move_all(::pread, f.descriptor, bytes, size, at);
-    if (moved < 0) return failed_call(errno);
+    if (moved < 0) return moved;
     // Allocated but never written: zeros, as in HDF5's own drivers.
     std::memset(bytes + moved, 0, size - static_cast<std::size_t>(moved));
     // What is held is newer.
@@ -275,7 +283,38 @@ herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t at, std::size_t size, void*
         if (begin < end)
             std::memcpy(bytes + (begin - at), held.data() + (begin - piece->first), end - begin);
     }
-    return 0;
+    return moved;
+}
+
+/// Returns whether a group's names lie within the file and the free places among them within these,
+/// one behind the other. HDF5 would write beyond its memory, or follow a circle of free places for
+/// ever and take memory for each (HDF5 File Format Specification 3.0, III.D).
+/// @param heap   where a group's names begin; kHeapBytes
+bool is_sound_heap(const OrderedFile& f, const unsigned char* heap) {
+    constexpr std::uint64_t kNoPlace = 1, kPlaceBytes = 16;
+    const std::uint64_t size = word_at(heap + 8), address = word_at(heap + 24);
+    const haddr_t end = std::max(f.end, length_of(f));
+    if (size > kMostNameBytes || size > end || address > end - size) return false;
+    Bytes names(size);
+    if (read_now(f, address, size, names.data()) < 0) return false;
+    std::uint64_t count = 0;
+    for (auto place = word_at(heap + 16); place != kNoPlace; place = word_at(&names[place])) {
+        if (size < kPlaceBytes || place > size - kPlaceBytes) return false;
+        if (word_at(&names[place + 8]) > size - place) return false;
+        if (++count > size / kPlaceBytes) return false;
+    }
+    return true;
+}
+
+herr_t read(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, void* buffer) try {
+    const OrderedFile& f = ordered(file);
+    auto* bytes = static_cast<unsigned char*>(buffer);
+    if (read_now(f, at, size, bytes) < 0) return failed_call(errno);
+    const bool is_heap =
+        type == H5FD_MEM_LHEAP && size >= kHeapBytes && std::memcmp(bytes, "HEAP", 4) == 0;
+    return is_heap && !is_sound_heap(f, bytes) ? failed("a group's names are damaged") : 0;
+} catch (const std::bad_alloc&) {
+    return failed("no memory");
 }
 
 herr_t write(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size,

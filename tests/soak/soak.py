@@ -3,7 +3,7 @@
 
 usage: soak.py PROGRAM SECONDS CSV
 
-simulate: 10,000 boxes with sleeping, for SECONDS. render: 30,000 frames of 16x9 pixels in one
+simulate: 10,000 boxes with sleeping, for SECONDS. render: 240,000 frames of 16x9 pixels in one
 process, for a quarter of that at most. Rows of the table: job, time [s], resident memory [MB], open
 files, processor time [s]. Ends with 1 if a promise is not kept.
 """
@@ -99,7 +99,7 @@ def simulate(program, folder, seconds, table):
 def render(program, folder, seconds, table):
     """Renders small frames of a ball that flies. Yields what is wrong."""
     scene, moved = folder / "frames.toml", folder / "frames.h5"
-    scene.write_text("[physics]\nduration = 1000\nsteps_per_second = 30\n"
+    scene.write_text("[physics]\nduration = 8000\nsteps_per_second = 30\n"
                      "[render]\nsize = [16, 9]\nsamples = 4\n"
                      "[[body]]\nshape = \"hypersphere\"\nradius = 0.5\nvelocity = [0.01, 10, 0, 0]\n")
     subprocess.run([program, "simulate", scene, "-o", moved, "--quiet"], check=True,

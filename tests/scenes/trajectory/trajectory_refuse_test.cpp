@@ -9,8 +9,10 @@
 #include <chrono>
 #include <fstream>
 #include <functional>
+#include <iterator>
 
 #include "core/error.hpp"
+#include "scenes/compare/content.hpp"
 #include "tests/error_of.hpp"
 #include "tests/scenes/trajectory/datasets.hpp"
 #include "tests/scenes/trajectory/trajectory_rows.hpp"
@@ -124,6 +126,28 @@ TEST_F(TrajectoryRefuse, NamesWhatIsWrongAtOnce) {
     }
     // A file of a few rows is refused in milliseconds; a loop over what it claims takes hours.
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+/// HDF5 looks without end for the chunks of a dataset that has other axes than these.
+TEST_F(TrajectoryRefuse, ChunksOfAnotherNumberOfAxes) {
+    write_whole();
+    std::ifstream in(path_, std::ios::binary);
+    const std::string whole(std::istreambuf_iterator<char>(in), {});
+    // A dataspace: version 1, three axes that may grow, five rows of three bodies (HDF5 File Format
+    // Specification 3.0, IV.A.2.b).
+    std::string space("\1\3\1\0\0\0\0\0\5\0\0\0\0\0\0\0\3\0\0\0\0\0\0\0", 24);
+    int found = 0;
+    for (std::size_t at = whole.find(space); at != whole.npos; at = whole.find(space, at + 1)) {
+        ++found;
+        for (const char axes : {'\0', '\1', '\2'}) {
+            std::string file = whole;
+            file[at + 1] = axes;
+            std::ofstream(path_, std::ios::binary) << file;
+            const std::string error = error_of<InputError>([&] { read_content(path_); });
+            EXPECT_NE(error.find("number of axes"), std::string::npos) << at << ": " << error;
+        }
+    }
+    EXPECT_GE(found, 3);
 }
 
 TEST_F(TrajectoryRefuse, ALeftoverOfOtherSteps) {
