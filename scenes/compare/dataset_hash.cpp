@@ -23,6 +23,8 @@ constexpr double kSlabBytes = 8 << 20;
 /// takes hours for what gzip made very small.
 constexpr double kMostSlabBytes = 256 << 20;
 constexpr double kMostRepeats = 8;
+/// Chunks of a slab, for each of which HDF5 takes 2 KB of memory. Usual 4096. Less: slower.
+constexpr double kMostChunks = 4096;
 
 /// A type of values as it is hashed: little-endian numbers, or texts as they are stored.
 struct ValueType {
@@ -91,6 +93,15 @@ struct Cut {
     hsize_t rows = 1;
 };
 
+/// Returns how many chunks one chunk along an axis has along all after it.
+double chunks_after(const DatasetStorage& storage, std::size_t axis) {
+    double chunks = 1;
+    for (std::size_t i = axis + 1; i < storage.chunk.size(); ++i)
+        chunks *= std::ceil(static_cast<double>(storage.extent[i]) /
+                            static_cast<double>(storage.chunk[i]));
+    return chunks;
+}
+
 /// The first axis along which whole chunks, or else some rows, fit into a slab.
 Cut cut_of(const DatasetStorage& storage, std::size_t element_bytes, const std::string& name) {
     const Extent& extent = storage.extent;
@@ -102,11 +113,14 @@ Cut cut_of(const DatasetStorage& storage, std::size_t element_bytes, const std::
         const hsize_t chunk =
             storage.chunk.empty() ? 1 : std::min(storage.chunk[axis], extent[axis]);
         const auto whole = static_cast<double>(chunk);
-        if (row_bytes <= kMostSlabBytes || is_last) {
+        const double chunks = chunks_after(storage, axis);
+        if ((row_bytes <= kMostSlabBytes && chunks <= kMostChunks) || is_last) {
             const auto rows_in = [&](double bytes) {
                 return std::max(1.0, std::floor(bytes / row_bytes));
             };
             double rows = rows_in(kSlabBytes);
+            if (!storage.chunk.empty())
+                rows = std::min(rows, whole * std::max(1.0, std::floor(kMostChunks / chunks)));
             if (whole * row_bytes <= kMostSlabBytes) {
                 rows = std::max(whole, rows - std::fmod(rows, whole));
             } else {

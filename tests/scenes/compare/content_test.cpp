@@ -4,9 +4,13 @@
 #include "scenes/compare/content.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <set>
@@ -126,7 +130,8 @@ TEST_F(ContentTest, OfALargeDatasetIsThatOfItsBytesInAnyChunks) {
     }
     write_trajectory(a_);
     const std::vector<std::vector<hsize_t>> chunks = {{},          {1, 301, 8},   {521, 40, 8},
-                                                      {64, 50, 5}, {521, 301, 8}, {3, 301, 8}};
+                                                      {64, 50, 5}, {521, 301, 8}, {3, 301, 8},
+                                                      {1, 6, 8},   {40, 2, 1}};
     for (const std::vector<hsize_t>& chunk : chunks) {
         const hid_t file = H5Fopen(a_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
         const hid_t space = H5Screate_simple(3, extent.data(), nullptr);
@@ -145,6 +150,41 @@ TEST_F(ContentTest, OfALargeDatasetIsThatOfItsBytesInAnyChunks) {
         H5Ldelete(again, "/x", H5P_DEFAULT);
         H5Fclose(again);
     }
+}
+
+/// HDF5 takes 2 KB for every chunk that one call reads.
+TEST_F(ContentTest, OfManySmallChunksTakesLittleMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "the sanitizers need addresses of their own";
+#endif
+    write_trajectory(a_);
+    const hid_t file = H5Fopen(a_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const std::vector<std::uint8_t> values(100'000, 7);
+    make_dataset(file, "/x", H5T_STD_U8LE, {values.size()}, 1);
+    const hid_t data = H5Dopen2(file, "/x", H5P_DEFAULT);
+    for (hsize_t at = 0; at < values.size(); at += 1000) {
+        const hid_t space = H5Dget_space(data);
+        const hsize_t count = 1000;
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, nullptr, &count, nullptr);
+        const hid_t memory = H5Screate_simple(1, &count, nullptr);
+        H5Dwrite(data, H5T_STD_U8LE, memory, space, H5P_DEFAULT, values.data());
+        H5Sclose(memory);
+        H5Sclose(space);
+    }
+    H5Dclose(data);
+    H5Fclose(file);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::uint64_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        const rlim_t most = pages * 4096 + (100 << 20);
+        const rlimit limit = {most, most};
+        ::setrlimit(RLIMIT_AS, &limit);
+        ::_exit(error_of<InputError>([&] { read_content(a_); }).empty() ? 7 : 1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 7);
 }
 
 TEST_F(ContentTest, OfATrajectoryChangesWithNamesTypesShapesAndTheEffectiveText) {
