@@ -33,8 +33,8 @@
 // shorter, or takes out links, closes the file before more is written. A group's names stay where
 // they are if the one taken out does not lie beside free space, or is put in again at once and is
 // the last (a short one is lost for good elsewhere, and gets another place).
-// All trajectories are read through it too: it refuses a damaged structure for which HDF5 would take
-// memory without end.
+// All trajectories are read through it too: it refuses a damaged structure for which HDF5 would
+// take memory without end.
 namespace tesserae::scenes::hdf5 {
 
 /// The driver's identifier, for H5Pset_driver. Files are those of HDF5's default driver.
