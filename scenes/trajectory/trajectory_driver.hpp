@@ -33,6 +33,7 @@
 // shorter, or takes out links, closes the file before more is written. A group's names stay where
 // they are if the one taken out does not lie beside free space, or is put in again at once and is
 // the last (a short one is lost for good elsewhere, and gets another place).
+//
 // All trajectories are read through it too: it refuses a damaged structure for which HDF5 would
 // take memory without end.
 namespace tesserae::scenes::hdf5 {
