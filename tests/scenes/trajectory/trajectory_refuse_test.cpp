@@ -128,7 +128,7 @@ TEST_F(TrajectoryRefuse, NamesWhatIsWrongAtOnce) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
-/// HDF5 looks without end for the chunks of a dataset that has other axes than these.
+/// HDF5 1.10 looks without end for the chunks of a dataset that has other axes than these.
 TEST_F(TrajectoryRefuse, ChunksOfAnotherNumberOfAxes) {
     write_whole();
     std::ifstream in(path_, std::ios::binary);
@@ -144,7 +144,11 @@ TEST_F(TrajectoryRefuse, ChunksOfAnotherNumberOfAxes) {
             file[at + 1] = axes;
             std::ofstream(path_, std::ios::binary) << file;
             const std::string error = error_of<InputError>([&] { read_content(path_); });
-            EXPECT_NE(error.find("number of axes"), std::string::npos) << at << ": " << error;
+            // HDF5 1.14 finds it by itself, in words of its own.
+            EXPECT_TRUE(error.find("number of axes") != error.npos ||
+                        error.find("number of dimensions") != error.npos ||
+                        error.find("dataspace dim") != error.npos)
+                << at << ": " << error;
         }
     }
     EXPECT_GE(found, 3);
