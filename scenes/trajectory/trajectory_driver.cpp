@@ -122,13 +122,15 @@ haddr_t length_of(const OrderedFile& f) {
     return ::fstat(f.descriptor, &status) == 0 ? static_cast<haddr_t>(status.st_size) : 0;
 }
 
-/// The file's end as a superblock of version 0 tells it (HDF5 File Format Specification 3.0, II.A).
-haddr_t end_in(const unsigned char* superblock) {
+std::uint64_t word_at(const unsigned char* bytes) {
     static_assert(std::endian::native == std::endian::little);
-    haddr_t end;
-    std::memcpy(&end, superblock + kEndAt, sizeof end);
-    return end;
+    std::uint64_t word;
+    std::memcpy(&word, bytes, sizeof word);
+    return word;
 }
+
+/// The file's end as a superblock of version 0 tells it (HDF5 File Format Specification 3.0, II.A).
+haddr_t end_in(const unsigned char* superblock) { return word_at(superblock + kEndAt); }
 
 void put_end(unsigned char* superblock, haddr_t end) {
     std::memcpy(superblock + kEndAt, &end, sizeof end);
@@ -259,12 +261,6 @@ herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) {
 }
 
 haddr_t length(const H5FD_t* file, H5FD_mem_t) { return length_of(ordered(file)); }
-
-std::uint64_t word_at(const unsigned char* bytes) {
-    std::uint64_t word;
-    std::memcpy(&word, bytes, sizeof word);
-    return word;
-}
 
 /// Reads what is held, and else the file.
 /// @return bytes read, fewer only at the file's end; -1 on failure, with errno
