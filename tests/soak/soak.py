@@ -19,7 +19,7 @@ import time
 
 # The two jobs are looked at so often, if they last as long as they may.
 SIMULATE_SAMPLES = 120
-RENDER_SAMPLES = 900  # which ends much sooner
+RENDER_SAMPLES = 900  # which ends sooner
 # Resident memory may differ by this between the middle and the end [MB]: pages of the allocator.
 MOST_GROWTH = 4.0
 # Of the energy that the boxes had at first, in what they lose by falling.
