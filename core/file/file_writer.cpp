@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <thread>
 
 #include "core/error.hpp"
 
@@ -13,6 +14,9 @@ namespace {
 /// Small writes (EXR headers, PNG rows) gather up to this many bytes, usual 64 KiB: far more and
 /// they leave the cache, far less and every one is a system call.
 constexpr std::size_t kBufferBytes = 64 * 1024;
+
+/// Between two looks at a file that another process writes.
+constexpr std::chrono::milliseconds kPause{5};
 
 }  // namespace
 
@@ -91,6 +95,20 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
     FileWriter writer(path);
     writer.write(content.data(), content.size());
     writer.finish();
+}
+
+void write_when_free(const std::function<void()>& write, const std::atomic<bool>& stop,
+                     std::chrono::milliseconds patience) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    for (;;) {
+        try {
+            return write();
+        } catch (const BusyError&) {
+            if (std::chrono::steady_clock::now() >= end) throw;
+        }
+        if (stop) throw Stopped();
+        std::this_thread::sleep_for(kPause);
+    }
 }
 
 }  // namespace tesserae

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -44,5 +47,13 @@ class FileWriter {
 
 /// Writes a whole file at once, for example a report.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Writes files that several processes may write at once, all of them the same content: calls
+/// `write` until it meets no file that another process holds.
+/// @param patience   usual 10 s: a small file on a slow network file system takes less
+/// @throws BusyError   another process holds a file for longer than that; Stopped once `stop` is
+/// set
+void write_when_free(const std::function<void()>& write, const std::atomic<bool>& stop,
+                     std::chrono::milliseconds patience = std::chrono::seconds(10));
 
 }  // namespace tesserae

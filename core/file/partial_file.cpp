@@ -141,6 +141,7 @@ std::string PartialFile::message(const char* what, int error) const {
 void PartialFile::fail(const char* what, int error) {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
+    if (error == EWOULDBLOCK) throw BusyError(message(what, error));
     throw RunError(message(what, error));
 }
 

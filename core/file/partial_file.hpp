@@ -4,7 +4,14 @@
 #include <filesystem>
 #include <string>
 
+#include "core/error.hpp"
+
 namespace tesserae {
+
+/// A BusyError says that another process writes the same file.
+struct BusyError : RunError {
+    using RunError::RunError;
+};
 
 /// A PartialFile is the file PATH.partial, open for reading and writing. It is locked (flock)
 /// against other processes until it gets its final name. A killed process leaves no lock, and its
@@ -13,7 +20,7 @@ namespace tesserae {
 class PartialFile {
   public:
     /// Opens and locks the file.
-    /// @throws RunError   it cannot be created, or another process holds it
+    /// @throws RunError   it cannot be created; BusyError: another process holds it
     explicit PartialFile(std::filesystem::path path);
     /// Closes the file and leaves it where it is.
     ~PartialFile();

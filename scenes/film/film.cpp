@@ -34,6 +34,21 @@ std::string command_for(const Scene& scene, int frame, const render::SampleNumbe
                        scene.file.string(), frame, s.x, s.y, s.x + 1, s.y + 1);
 }
 
+/// Makes what all processes that render into a folder need: they make the same.
+void prepare_folder(const Scene& scene, Shots& shots, const fs::path& folder, Replace replace,
+                    const std::atomic<bool>& stop) {
+    create_folder(folder / "frames");
+    create_folder(folder / "preview");
+    write_when_free(
+        [&] {
+            const bool is_changed = !require_folder_of(scene, folder, replace).empty();
+            if (!fs::exists(folder / kSceneFile) || is_changed || replace == Replace::kAll)
+                write_file(folder / kSceneFile, scene.effective);
+            shots.name_mattes(folder / "frames");
+        },
+        stop);
+}
+
 }  // namespace
 
 std::string clamped_pixels_text(const render::FrameStats& stats, const Scene& scene, int frame) {
@@ -82,16 +97,12 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
                 const fs::path& folder, Replace replace, bool quiet,
                 std::optional<render::FramePart> part, const Watch& watch) {
     const auto begin = std::chrono::steady_clock::now();
-    const bool is_changed = !require_folder_of(scene, folder, replace).empty();
+    require_folder_of(scene, folder, replace);
     Shots shots(scene, frames, trajectory);
+    prepare_folder(scene, shots, folder, replace, *watch.stop);
 
     FilmReport report;
     report.frames = folder / "frames";
-    create_folder(report.frames);
-    create_folder(folder / "preview");
-    if (!fs::exists(folder / kSceneFile) || is_changed || replace == Replace::kAll)
-        write_file(folder / kSceneFile, scene.effective);
-    shots.name_mattes(report.frames);
 
     const int parts = parts_of_frame(scene);
     std::optional<Shown> shown;

@@ -117,9 +117,12 @@ herr_t set_length(OrderedFile& f, haddr_t length) {
     return f.broken == 0 ? 0 : failed_call(f.broken);
 }
 
+/// @return the file's length; HADDR_UNDEF on failure
 haddr_t length_of(const OrderedFile& f) {
     struct stat status;
-    return ::fstat(f.descriptor, &status) == 0 ? static_cast<haddr_t>(status.st_size) : 0;
+    if (::fstat(f.descriptor, &status) == 0) return static_cast<haddr_t>(status.st_size);
+    failed_call(errno);
+    return HADDR_UNDEF;
 }
 
 std::uint64_t word_at(const unsigned char* bytes) {
@@ -174,9 +177,11 @@ herr_t write_held(OrderedFile& f) {
     // A reader asks for the length before it reads the superblock: the length is ahead of that.
     // Where files may not be so long there is no room.
     haddr_t said = superblock ? with_room(end) : f.said_end;
-    if (length_of(f) < with_room(said) && change_length(f, with_room(said)) != 0) {
+    const haddr_t bytes = length_of(f);
+    if (bytes == HADDR_UNDEF) return -1;
+    if (bytes < with_room(said) && change_length(f, with_room(said)) != 0) {
         if (superblock) said = end;
-        if (length_of(f) < said && set_length(f, said) < 0) return -1;
+        if (bytes < said && set_length(f, said) < 0) return -1;
     }
     if (superblock) put_end(superblock->second.bytes.data(), said);
     for (const Entry* entry : order)
@@ -282,24 +287,32 @@ ssize_t read_now(const OrderedFile& f, haddr_t at, std::size_t size, unsigned ch
     return moved;
 }
 
-/// Returns whether a group's names lie within the file and the free places among them within these,
-/// one behind the other. HDF5 would write beyond its memory, or follow a circle of free places for
-/// ever and take memory for each (HDF5 File Format Specification 3.0, III.D).
-/// @param heap   where a group's names begin; kHeapBytes
-bool is_sound_heap(const OrderedFile& f, const unsigned char* heap) {
+/// Returns whether the free places among a group's names lie within these, one behind the other.
+/// @param place   the first
+bool are_sound_places(const Bytes& names, std::uint64_t place) {
     constexpr std::uint64_t kNoPlace = 1, kPlaceBytes = 16;
-    const std::uint64_t size = word_at(heap + 8), address = word_at(heap + 24);
-    const haddr_t end = std::max(f.end, length_of(f));
-    if (size > kMostNameBytes || size > end || address > end - size) return false;
-    Bytes names(size);
-    if (read_now(f, address, size, names.data()) < 0) return false;
     std::uint64_t count = 0;
-    for (auto place = word_at(heap + 16); place != kNoPlace; place = word_at(&names[place])) {
-        if (size < kPlaceBytes || place > size - kPlaceBytes) return false;
-        if (word_at(&names[place + 8]) > size - place) return false;
-        if (++count > size / kPlaceBytes) return false;
+    for (; place != kNoPlace; place = word_at(&names[place])) {
+        if (names.size() < kPlaceBytes || place > names.size() - kPlaceBytes) return false;
+        if (word_at(&names[place + 8]) > names.size() - place) return false;
+        if (++count > names.size() / kPlaceBytes) return false;
     }
     return true;
+}
+
+/// Refuses a group's names that do not lie within the file, or whose free places are damaged. HDF5
+/// would write beyond its memory, or follow a circle of free places for ever and take memory for
+/// each (HDF5 File Format Specification 3.0, III.D).
+/// @param heap   where a group's names begin; kHeapBytes
+herr_t check_heap(const OrderedFile& f, const unsigned char* heap) {
+    constexpr const char* kDamaged = "a group's names are damaged";
+    const std::uint64_t size = word_at(heap + 8), address = word_at(heap + 24);
+    const haddr_t bytes = length_of(f), end = std::max(f.end, bytes);
+    if (bytes == HADDR_UNDEF) return -1;
+    if (size > kMostNameBytes || size > end || address > end - size) return failed(kDamaged);
+    Bytes names(size);
+    if (read_now(f, address, size, names.data()) < 0) return failed_call(errno);
+    return are_sound_places(names, word_at(heap + 16)) ? 0 : failed(kDamaged);
 }
 
 herr_t read(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, void* buffer) try {
@@ -308,7 +321,7 @@ herr_t read(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t at, std::size_t size, 
     if (read_now(f, at, size, bytes) < 0) return failed_call(errno);
     const bool is_heap =
         type == H5FD_MEM_LHEAP && size >= kHeapBytes && std::memcmp(bytes, "HEAP", 4) == 0;
-    return is_heap && !is_sound_heap(f, bytes) ? failed("a group's names are damaged") : 0;
+    return is_heap ? check_heap(f, bytes) : 0;
 } catch (const std::bad_alloc&) {
     return failed("no memory");
 }
@@ -338,8 +351,9 @@ herr_t truncate(H5FD_t* file, hid_t, hbool_t closing) {
     if (write_held(f) < 0) return -1;
     // Nobody adds to it any more: its end is where it is.
     if (f.said_end != f.known_end && say_end(f, f.known_end) < 0) return -1;
-    const haddr_t end = std::max(f.end, f.known_end);
-    return length_of(f) == end ? 0 : set_length(f, end);
+    const haddr_t bytes = length_of(f), end = std::max(f.end, f.known_end);
+    if (bytes == HADDR_UNDEF) return -1;
+    return bytes == end ? 0 : set_length(f, end);
 }
 
 H5FD_class_t driver_class() {

@@ -6,13 +6,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <string>
+#include <thread>
 
 #include "core/error.hpp"
 #include "tests/child_process.hpp"
@@ -24,6 +28,7 @@ namespace tesserae {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 using tesserae::testing::content;
 using tesserae::testing::error_of;
 using tesserae::testing::status_of_child;
@@ -94,6 +99,29 @@ TEST_F(FileWriterTest, RefusesASecondWriter) {
     EXPECT_EQ(status, 7);
     writer.finish();
     EXPECT_EQ(content(path), "first");
+}
+
+TEST_F(FileWriterTest, WaitsForAnotherWriterWhoseFileItShares) {
+    const fs::path path = folder_ / "file";
+    const std::atomic<bool> goes_on = false, stops = true;
+    const auto write = [&] { write_file(path, "shared"); };
+    // A lock belongs to the opened file: a second writer of this process meets it too.
+    auto first = std::make_unique<FileWriter>(path);
+    const std::string busy = path.string() + ": is being written by another process";
+    EXPECT_EQ(error_of<BusyError>([&] { write_when_free(write, goes_on, 20ms); }), busy);
+    EXPECT_THROW(write_when_free(write, stops), Stopped);
+    EXPECT_FALSE(fs::exists(path));
+
+    std::thread other([&] {
+        std::this_thread::sleep_for(50ms);
+        first->write("first", 5);
+        first->finish();
+    });
+    int calls = 0;
+    write_when_free([&] { ++calls, write(); }, goes_on);
+    other.join();
+    EXPECT_EQ(content(path), "shared");
+    EXPECT_GT(calls, 1);
 }
 
 TEST_F(FileWriterTest, OverwritesTheLeftoverOfAKilledWriter) {

@@ -2,8 +2,12 @@
 // A frame rendered in parts and joined is the frame rendered at once.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
+#include <memory>
+#include <thread>
 
+#include "core/file/file_writer.hpp"
 #include "tests/scenes/program/program.hpp"
 
 namespace tesserae::scenes::testing {
@@ -78,6 +82,33 @@ void expect_parts_join(int most) {
 
 TEST(Parts, JoinToTheBytesOfASingleRun) { expect_parts_join(12); }
 TEST(PartsSlow, JoinToTheBytesOfASingleRun) { expect_parts_join(17); }
+
+TEST(Parts, WaitForThoseThatBeginTheFolderAtTheSameTime) {
+    const Folder folder("begin");
+    const auto scene = folder.write("still.toml", still_scene());
+    const auto done = folder.file("done"), out = folder.file("out");
+    ASSERT_EQ(tesserae(part_words(scene, done, 1, 2, {})).status, 0);
+    const std::string effective = content(done + "/scene.toml");
+    // Another process writes the folder's scene, of this one or of another.
+    for (const bool is_same : {true, false}) {
+        fs::create_directories(out);
+        auto writer = std::make_unique<FileWriter>(out + "/scene.toml");
+        std::thread other([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(300));
+            const std::string text =
+                effective + (is_same ? "" : "[[body]]\nshape = \"hypersphere\"\n");
+            writer->write(text.data(), text.size());
+            writer->finish();
+        });
+        const Outcome part = tesserae(part_words(scene, out, 2, 2, {}));
+        other.join();
+        EXPECT_EQ(part.status, is_same ? 0 : 2) << part.err;
+        EXPECT_EQ(fs::exists(out + "/frames/still.0000.2of2.tiles"), is_same);
+        EXPECT_EQ(part.err.find("holds frames of another scene") != std::string::npos, !is_same);
+        EXPECT_EQ(content(out + "/scene.toml").size() == effective.size(), is_same);
+        fs::remove_all(out);
+    }
+}
 
 TEST(Parts, ThatAreThereAreKeptAndThoseThatLackAreNamed) {
     const Folder folder("parts");
