@@ -240,8 +240,10 @@ class Job:
         return name.endswith(".h5") and self.hash_of(a) == self.hash_of(b)
 
     def hash_of(self, file):
-        found = subprocess.run([self.setup.program, "hash", file], capture_output=True, text=True)
-        return found.stdout.split()[0] if found.returncode == 0 and found.stdout else None
+        def look():
+            found = subprocess.run([self.setup.program, "hash", file], capture_output=True, text=True)
+            return found.stdout.split()[0] if found.returncode == 0 and found.stdout else None
+        return once_for_bytes("hash", file, look)
 
     def damaged(self):
         """Of the files that have their final names: those that are neither as before nor as after."""
@@ -306,15 +308,20 @@ def files_below(folder):
 
 def is_movie(file):
     """Whether ffmpeg can decode all of it."""
-    content = file.read_bytes()
-    if content not in movies:
-        movies[content] = subprocess.run(
-            ["ffmpeg", "-v", "error", "-xerror", "-i", file, "-f", "null", "-"],
-            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
-    return movies[content]
+    words = ["ffmpeg", "-v", "error", "-xerror", "-i", file, "-f", "null", "-"]
+    silent = {name: subprocess.DEVNULL for name in ("stdin", "stdout", "stderr")}
+    return once_for_bytes("movie", file, lambda: subprocess.run(words, **silent).returncode == 0)
 
 
-movies = {}  # what is_movie() has found, by a file's bytes
+found_of_bytes = {}
+
+
+def once_for_bytes(what, file, look):
+    """look(), called once for all files of the same bytes."""
+    key = what, hashlib.sha256(file.read_bytes()).digest()
+    if key not in found_of_bytes:
+        found_of_bytes[key] = look()
+    return found_of_bytes[key]
 
 
 class Setup:
