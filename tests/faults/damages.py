@@ -61,13 +61,15 @@ def cases(name, effort, ways=WAYS):
             yield way, random.Random(f"{SEED} {name} {way.__name__} {i}"), f"{way.__name__} {i}"
 
 
-def bad_end(outcome):
-    """What no damage may do."""
+def bad_end(outcome, answers=False):
+    """What no damage may do.
+    @param answers   1 is the command's answer, on standard output: what differs"""
     if outcome.ended_by_signal():
         return f"ended by signal {-outcome.status}: {outcome.err.strip()}"
     if outcome.status not in (0, 1, 2):
         return f"exit status {outcome.status}: {outcome.err.strip()}"
-    if outcome.status != 0 and not outcome.err.strip():
+    words = outcome.out if answers and outcome.status == 1 else outcome.err
+    if outcome.status != 0 and not words.strip():
         return f"exit status {outcome.status} without a word"
     return None
 
@@ -216,7 +218,7 @@ def trajectories(setup, table, effort):
             job.reset()
             damage(job.now / "in.h5", way, random.Random(text))
             outcome = job.run([steps])
-            complaint = bad_end(outcome)
+            complaint = bad_end(outcome, answers=name == "diff")
             if not complaint and outcome.status != 0 and name != "diff" and "in.h5" not in outcome.err:
                 complaint = f"in.h5 is not named: {outcome.err.strip()}"
             table.add(f"a damaged trajectory harms nothing: {name}", complaint, text)
