@@ -4,7 +4,7 @@
 # files, starts it twice. Installs what is missing, builds, takes up to an hour and a half.
 #   bash tests/faults.sh              all checks, a drawn part of the cases (always the same)
 #   bash tests/faults.sh --quick      a minute's part
-#   bash tests/faults.sh --all        every call and more moments: hours
+#   bash tests/faults.sh --all        every call and more moments: two to three hours
 #   bash tests/faults.sh --only kills            one check: failing_calls, kills, damages, two_writers
 #                                                or reader
 #   bash tests/faults.sh --only kills --case JOB FAULT    one case, as a failure names it
