@@ -34,7 +34,8 @@ std::string command_for(const Scene& scene, int frame, const render::SampleNumbe
                        scene.file.string(), frame, s.x, s.y, s.x + 1, s.y + 1);
 }
 
-/// Makes what all processes that render into a folder need: they make the same.
+/// Makes what all processes that render into a folder need: they make the same. One that has waited
+/// for another looks at the folder again, as that may have been of another scene.
 void prepare_folder(const Scene& scene, Shots& shots, const fs::path& folder, Replace replace,
                     const std::atomic<bool>& stop) {
     create_folder(folder / "frames");
@@ -97,6 +98,7 @@ FilmReport film(const Scene& scene, const std::vector<int>& frames, const fs::pa
                 const fs::path& folder, Replace replace, bool quiet,
                 std::optional<render::FramePart> part, const Watch& watch) {
     const auto begin = std::chrono::steady_clock::now();
+    // Refused before the trajectory is read, which may take long.
     require_folder_of(scene, folder, replace);
     Shots shots(scene, frames, trajectory);
     prepare_folder(scene, shots, folder, replace, *watch.stop);
