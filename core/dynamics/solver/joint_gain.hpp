@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/dynamics/constraints/contact_targets.hpp"
 #include "core/dynamics/step/step_data.hpp"
 
 namespace tesserae {

@@ -71,15 +71,15 @@ TEST_F(CompareProgram, HashIsTheSameAtAnyThreadCountAndAfterAnInterruption) {
         EXPECT_EQ(run({"hash", file("a"), "--threads", threads}).out, by_default);
     const std::string scene = folder_->write("long.toml", small_scene(5));
     const std::vector<std::string> words = {"simulate", scene, "--store-every", "1", "-o"};
-    const auto simulate = [&](const char* name, int signal) {
+    const auto simulate = [&](const char* name, int signal = 0, int delay = 0) {
         std::vector<std::string> line = words;
         line.push_back(file(name));
-        return tesserae(line, signal, 60).status;
+        return tesserae(line, signal, delay);
     };
-    ASSERT_EQ(simulate("straight.h5", 0), 0);
-    // A machine may be so fast that nothing is left to interrupt.
-    simulate("stopped.h5", SIGINT);
-    ASSERT_EQ(simulate("stopped.h5", 0), 0);
+    const Outcome straight = simulate("straight.h5");
+    ASSERT_EQ(straight.status, 0);
+    EXPECT_NE(simulate("stopped.h5", SIGINT, straight.milliseconds / 3).status, 0);
+    ASSERT_EQ(simulate("stopped.h5").status, 0);
     EXPECT_EQ(hash("straight.h5"), hash("stopped.h5"));
     EXPECT_EQ(run({"diff", file("straight.h5"), file("stopped.h5")}).out, "equal\n");
 }

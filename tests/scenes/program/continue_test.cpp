@@ -85,13 +85,15 @@ void expect_kills_lose_nothing(int kills) {
     const Folder folder("continue");
     const auto scene = folder.write("heap.toml", heap_scene());
     const auto straight = folder.file("straight.h5"), file = folder.file("film.h5");
-    ASSERT_EQ(tesserae(simulation(scene, straight, "20")).status, 0);
+    const Outcome whole = tesserae(simulation(scene, straight, "20"));
+    ASSERT_EQ(whole.status, 0);
     ASSERT_EQ(tesserae(simulation(scene, file, "1")).status, 0);
     const std::string finished = content(file);
     std::mt19937 random(2);
     int killed = 0;
     for (int i = 0; i < kills; ++i) {
-        const int delay = std::uniform_int_distribution(5, 250)(random);
+        const int percent = std::uniform_int_distribution(2, 25)(random);
+        const int delay = whole.milliseconds * percent / 100;
         if (tesserae(simulation(scene, file, "20"), SIGKILL, delay).status == 0) break;
         ++killed;
         // The finished file is as it was until it has its longer successor.

@@ -201,14 +201,16 @@ TEST_F(FirstFramesSlow, KillsLoseNothing) {
         words.insert(words.end(), more.begin(), more.end());
         return words;
     };
-    ASSERT_EQ(tesserae(simulation(straight, {})).status, 0);
+    const Outcome whole = tesserae(simulation(straight, {}));
+    ASSERT_EQ(whole.status, 0);
     std::mt19937 random(5);
     int killed = 0;
     for (int i = 0; i < 8; ++i) {
         fs::remove(file);
         fs::remove(file + ".partial");
         // A run of all or of the first half is killed, then a few frames are asked for.
-        const int delay = std::uniform_int_distribution(30, 250)(random);
+        const int percent = std::uniform_int_distribution(5, 60)(random);
+        const int delay = whole.milliseconds * percent / 100;
         const Words half = i % 2 == 0 ? Words{} : Words{"--frames", "200"};
         if (tesserae(simulation(file, half), SIGKILL, delay).status == 0) continue;
         std::uint64_t rows = 0;

@@ -27,6 +27,7 @@ WithFilms::~WithFilms() { --films_wanted; }
 Outcome tesserae(const std::vector<std::string>& arguments, int signal, int milliseconds) {
     const Folder folder("program");
     const std::string out = folder.file("out"), err = folder.file("err");
+    const auto begin = std::chrono::steady_clock::now();
     const pid_t child = fork();
     if (child == 0) {
         const auto redirect = [](const std::string& file, int to) {
@@ -52,6 +53,8 @@ Outcome tesserae(const std::vector<std::string>& arguments, int signal, int mill
     waitpid(child, &status, 0);
     Outcome outcome;
     outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    outcome.milliseconds =
+        static_cast<int>((std::chrono::steady_clock::now() - begin) / std::chrono::milliseconds(1));
     outcome.out = content(out);
     outcome.err = content(err);
     return outcome;

@@ -12,7 +12,8 @@ namespace tesserae::scenes::testing {
 
 /// What a run of the program `tesserae` left.
 struct Outcome {
-    int status = -1;  ///< exit status; 1000 + signal if a signal ended it
+    int status = -1;       ///< exit status; 1000 + signal if a signal ended it
+    int milliseconds = 0;  ///< how long it took
     std::string out, err;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/dynamics/solver/kernels/kernels.hpp"
+#include "core/dynamics/solver/kernels/lanes.hpp"
 
 namespace tesserae {
 
